@@ -1,0 +1,123 @@
+#include <string>
+#include <vector>
+
+#include "components/control/nearest_echo.hpp"
+#include "components/control/potential_field.hpp"
+#include "components/plane_messages.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/PoseStamped.hpp"
+#include "geometry_msgs/msg/TwistStamped.hpp"
+#include "kervan_msgs/msg/ForceField.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+
+namespace kervan::control {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct PotentialFieldParams {
+  Duration period = 100ms;
+  ForceParams force;
+  ForceDriveParams drive;
+  double arrive_within = 0.03;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    v(force.law, "law", {.choices = {"potential_classic", "potential_gecui"}, .help = "How an obstacle repels."});
+    v(force.xi, "xi", {.min = 0.0, .max = 100.0, .help = "Attraction for each metre to the waypoint."});
+    v(force.eta, "eta", {.min = 0.0, .max = 100.0, .help = "Strength of the repulsion."});
+    v(force.n, "n", {.min = 0.0, .max = 10.0, .help = "Power of the distance to the goal in the repulsion of Ge & Cui."});
+    v(force.rho0, "rho0", {.unit = "m", .min = 0.05, .max = 10.0, .help = "An obstacle acts within this distance."});
+    v(force.rho_g_cap, "rho_g_cap",
+      {.unit = "m", .min = 0.05, .max = 1000.0, .help = "The force takes a farther waypoint to be this far."});
+    v(drive.speed, "speed", {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Speed on a free course."});
+    v(drive.full_force, "full_force", {.min = 0.01, .max = 100.0, .help = "A force of this or more means full speed."});
+    v(drive.turn_gain, "turn_gain", {.unit = "1/s", .min = 0.0, .max = 20.0, .help = "Turning rate per angle to turn."});
+    v(drive.turn_rate, "turn_rate", {.unit = "rad/s", .min = 0.0, .max = 10.0, .help = "Highest turning rate."});
+    v(drive.stop_distance, "stop_distance",
+      {.unit = "m", .min = 0.0, .max = 5.0, .help = "Stands this far from an obstacle, from the robot's centre."});
+    v(drive.braking, "braking", {.unit = "m/s2", .min = 0.01, .max = 10.0, .help = "Deceleration it may count on."});
+    v(arrive_within, "arrive_within",
+      {.unit = "m", .min = 0.001, .max = 1.0, .help = "Stands still this near to its waypoint until the next comes."});
+  }
+};
+
+/// Drives a robot along the force of a potential field (potential_field.hpp). Stands, and reports `degraded` with the
+/// reason, while an input it needs is missing or stale.
+class PotentialFieldComponent final : public Component {
+  PotentialFieldParams params_ = parameters<PotentialFieldParams>();
+  Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, &PotentialFieldComponent::on_waypoint,
+                                                   "Where to drive, in the frame of the odometry."};
+  Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor.max_age(500ms), "Where the robot is."};
+  Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(500ms), "Obstacles around the robot."};
+  Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command, "Speed wanted of base_link."};
+  Output<kervan_msgs::msg::ForceField> force_{this, "force", qos::sensor, "The forces on the robot, for looking at."};
+  Timer tick_{this, params_.period, &PotentialFieldComponent::on_tick};
+  std::vector<SonarEcho> echoes_;
+  bool arrived_ = false;
+
+  void on_waypoint(const geometry_msgs::msg::PoseStamped&, Time) { arrived_ = false; }
+
+  void on_tick(Time now) {
+    for (const InputBase* input : {static_cast<InputBase*>(&waypoint_), static_cast<InputBase*>(&odom_),
+                                   static_cast<InputBase*>(&sonar_)}) {
+      if (std::string why = input->missing(); !why.empty()) return stand(now, std::move(why));
+    }
+    const auto& odometry = *odom_.latest();
+    const geometry::Pose2 robot = components::pose_of(odometry.pose.pose);
+    const geometry::Vector2 goal = components::position_of(waypoint_.latest()->pose);
+    if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return stand(now, "odom: the pose is not finite");
+    if (!goal.allFinite()) return stand(now, "waypoint: the position is not finite");
+
+    std::optional<geometry::Vector2> obstacle = nearest_obstacle(*sonar_.latest());
+    if (obstacle) obstacle = robot * *obstacle;
+    const Force force = force_at(params_.force, robot.position(), goal, obstacle);
+    publish_force(now, odometry.header.frame_id, robot, force);
+    arrived_ = arrived_ || force.rho_g <= params_.arrive_within;
+    command(now, arrived_ ? geometry::Twist2{} : drive_along(params_.drive, force, robot.yaw));
+    report_active();
+  }
+
+  void on_deactivate(Time now) override { command(now, {}); }
+
+  std::optional<geometry::Vector2> nearest_obstacle(const kervan_msgs::msg::SonarArray& sonar) {
+    echoes_.clear();
+    for (const auto& reading : sonar.readings)
+      echoes_.push_back({{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
+                         static_cast<double>(reading.range)});
+    return nearest_echo(echoes_, static_cast<double>(sonar.max_range));
+  }
+
+  void stand(Time now, std::string why) {
+    command(now, {});
+    report_degraded(std::move(why));
+  }
+
+  void command(Time now, const geometry::Twist2& twist) {
+    auto message = cmd_vel_.loan();
+    const auto* odometry = odom_.latest();
+    components::set_header(message->header, now, odometry ? odometry->child_frame_id : std::string());
+    message->twist = components::to_message(twist);
+    cmd_vel_.publish(std::move(message));
+  }
+
+  void publish_force(Time now, const std::string& frame, const geometry::Pose2& robot, const Force& force) {
+    auto message = force_.loan();
+    components::set_header(message->header, now, frame);
+    message->position.x = robot.x;
+    message->position.y = robot.y;
+    message->attraction.x = force.attraction.x();
+    message->attraction.y = force.attraction.y();
+    message->repulsion.x = force.repulsion.x();
+    message->repulsion.y = force.repulsion.y();
+    force_.publish(std::move(message));
+  }
+};
+
+}  // namespace
+}  // namespace kervan::control
+
+KERVAN_COMPONENT(kervan::control::PotentialFieldComponent, "control/potential_field",
+                 "Drives to a waypoint along the force of a potential field, classical or Ge & Cui's.")

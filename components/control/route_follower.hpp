@@ -1,0 +1,46 @@
+/// Hands out the waypoints of a route one after the other.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "framework/geometry/pose2.hpp"
+
+namespace kervan::control {
+
+struct RouteFollowerParams {
+  double pass_within = 0.5;     ///< m; an intermediate waypoint counts as passed within this distance
+  double arrive_within = 0.03;  ///< m; the last waypoint counts as reached within this distance
+};
+
+/// Keeps its place on a route: a waypoint once passed is not asked for again, and a route once finished stays finished
+/// until the next one, even if the robot drifts away.
+class RouteFollower {
+ public:
+  explicit RouteFollower(const RouteFollowerParams& params) : params_(params) {}
+
+  /// Starts a route from its first waypoint; points in metres, in the frame of the positions given to advance(). An empty
+  /// route leaves nothing to do.
+  void start(std::vector<geometry::Vector2> route);
+
+  /// Passes every waypoint that counts from `position`, several if they lie close together. True if the current waypoint
+  /// changed or the route was finished. A position that is not finite passes nothing.
+  bool advance(const geometry::Vector2& position);
+
+  /// Where to drive now; none before the first route and after an empty one. A finished route keeps its last waypoint.
+  std::optional<geometry::Vector2> waypoint() const;
+
+  /// Number of the current waypoint on the route, from 0.
+  std::size_t index() const { return index_; }
+  std::size_t size() const { return route_.size(); }
+  bool arrived() const { return arrived_; }
+
+ private:
+  RouteFollowerParams params_;
+  std::vector<geometry::Vector2> route_;
+  std::size_t index_ = 0;
+  bool arrived_ = false;
+};
+
+}  // namespace kervan::control

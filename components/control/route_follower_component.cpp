@@ -1,0 +1,69 @@
+#include <vector>
+
+#include "components/control/route_follower.hpp"
+#include "components/plane_messages.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/PoseStamped.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+#include "nav_msgs/msg/Path.hpp"
+
+namespace kervan::control {
+namespace {
+
+using namespace std::chrono_literals;
+
+struct RouteFollowerComponentParams {
+  RouteFollowerParams follow;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(follow.pass_within, "pass_within",
+      {.unit = "m", .min = 0.0, .max = 10.0, .help = "An intermediate waypoint counts as passed within this distance."});
+    v(follow.arrive_within, "arrive_within",
+      {.unit = "m", .min = 0.0, .max = 10.0, .help = "The last waypoint counts as reached within this distance."});
+  }
+};
+
+/// Hands out the waypoint to drive to now. An empty route asks the robot to stay where it is.
+class RouteFollowerComponent final : public Component {
+  RouteFollowerComponentParams params_ = parameters<RouteFollowerComponentParams>();
+  RouteFollower follower_{params_.follow};
+  Input<nav_msgs::msg::Path> route_{this, "route", qos::latched, &RouteFollowerComponent::on_route,
+                                    "Waypoints to drive through, in order."};
+  Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor.max_age(500ms), &RouteFollowerComponent::on_odometry,
+                                       "Where the robot is."};
+  Output<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, "Where to drive now."};
+  std::string frame_;
+
+  void on_route(const nav_msgs::msg::Path& route, Time now) {
+    std::vector<geometry::Vector2> points;
+    for (const auto& pose : route.poses) points.push_back(components::position_of(pose.pose));
+    frame_ = route.header.frame_id;
+    const auto* odometry = odom_.latest();
+    if (points.empty() && odometry) points.push_back(components::position_of(odometry->pose.pose));
+    follower_.start(std::move(points));
+    if (odometry) follower_.advance(components::position_of(odometry->pose.pose));
+    publish_waypoint(now);
+  }
+
+  void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
+    const std::size_t before = follower_.index();
+    follower_.advance(components::position_of(odometry.pose.pose));
+    if (follower_.index() != before) publish_waypoint(now);
+  }
+
+  void publish_waypoint(Time now) {
+    const auto at = follower_.waypoint();
+    if (!at) return;
+    auto waypoint = waypoint_.loan();
+    components::set_header(waypoint->header, now, frame_);
+    waypoint->pose = components::to_message(geometry::Pose2{at->x(), at->y(), 0.0});
+    waypoint_.publish(std::move(waypoint));
+  }
+};
+
+}  // namespace
+}  // namespace kervan::control
+
+KERVAN_COMPONENT(kervan::control::RouteFollowerComponent, "control/route_follower",
+                 "Hands out the waypoints of a route one after the other.")

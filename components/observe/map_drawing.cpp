@@ -1,0 +1,470 @@
+#include "components/observe/map_drawing.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "components/observe/decimal.hpp"
+#include "components/observe/svg_writer.hpp"
+
+namespace kervan::observe {
+namespace {
+
+using geometry::Vector2;
+
+// Lengths of the page are in pixels of a page 1000 px wide; lengths of the world are in metres.
+constexpr double page_width = 1000.0, margin = 36.0, header = 74.0, gap = 34.0;
+constexpr double map_width = page_width - 2.0 * margin, map_height = 900.0;  // the most
+constexpr double detail_size = 240.0, detail_gap = 20.0, line_height = 19.0;
+constexpr std::size_t most_details = 3;
+
+constexpr std::array<const char*, 6> robot_colours{"#1769aa", "#d1580f", "#2c8a4b", "#8445a8", "#b3881a", "#0f8b8d"};
+constexpr const char* ink = "#1f2933";
+constexpr const char* soft_ink = "#6b7785";
+constexpr const char* wall_colour = "#2f3b47";
+constexpr const char* solid_colour = "#9aa5b1";
+constexpr const char* success_colour = "#2c8a4b";
+constexpr const char* failure_colour = "#c0392b";
+constexpr const char* fonts = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
+
+std::string metres(double value) { return decimal(value, 4); }
+std::string pixels(double value) { return decimal(value, 1); }
+
+/// The part of the world that is drawn.
+struct Bounds {
+  Vector2 low = Vector2::Constant(std::numeric_limits<double>::infinity());
+  Vector2 high = -low;
+
+  void add(const Vector2& point, double around = 0.0) {
+    if (!point.allFinite()) return;
+    low = low.cwiseMin(point - Vector2::Constant(around));
+    high = high.cwiseMax(point + Vector2::Constant(around));
+  }
+  void add(const Polyline& points) {
+    for (const auto& point : points) add(point);
+  }
+  double width() const { return high.x() - low.x(); }
+  double height() const { return high.y() - low.y(); }
+};
+
+Bounds bounds_of(const MapDrawing& drawing) {
+  Bounds bounds;
+  for (const auto& [a, b] : drawing.world.walls) {
+    bounds.add(a);
+    bounds.add(b);
+  }
+  for (const auto& circle : drawing.world.circles) bounds.add(circle.center, circle.radius);
+  for (const auto& polygon : drawing.world.polygons) bounds.add(polygon);
+  bounds.add(drawing.nodes);
+  for (const auto& robot : drawing.robots) {
+    bounds.add(robot.route);
+    bounds.add(robot.truth);
+    bounds.add(robot.odometry);
+    if (robot.goal) bounds.add(*robot.goal, robot.tolerance);
+  }
+  if (!(bounds.width() >= 0.0)) bounds.add(Vector2::Zero());
+  bounds.add(bounds.low, 0.5);
+  bounds.add(bounds.high, 0.5);
+  return bounds;
+}
+
+/// 1, 2 or 5 times a power of ten: the smallest that is at least `value`.
+double round_step(double value) {
+  const double power = std::pow(10.0, std::floor(std::log10(value)));
+  for (const double factor : {1.0, 2.0, 5.0})
+    if (factor * power >= value * (1.0 - 1e-9)) return factor * power;
+  return 10.0 * power;
+}
+
+std::string length_text(double length) { return decimal(length, length < 0.095 ? 2 : length < 0.95 ? 1 : 0) + " m"; }
+
+/// Draws shapes of the world. A pixel is `px` metres, so that lines and marks keep their size on the page at any scale.
+class WorldLayer {
+ public:
+  WorldLayer(SvgWriter& svg, double px) : svg_(svg), px_(px) {}
+
+  double px() const { return px_; }
+
+  void line(const Polyline& points, const char* colour, double width, const std::string& dashes = {},
+            const char* opacity = "") {
+    std::string data;
+    for (const auto& point : points) {
+      if (!point.allFinite()) continue;
+      data += data.empty() ? "M" : " L";
+      data += metres(point.x()) + ',' + metres(-point.y());
+    }
+    if (data.empty()) return;
+    svg_.element("path", {{"d", data},
+                          {"fill", "none"},
+                          {"stroke", colour},
+                          {"stroke-width", metres(width * px_)},
+                          {"stroke-dasharray", dashes},
+                          {"stroke-opacity", opacity},
+                          {"stroke-linecap", "round"},
+                          {"stroke-linejoin", "round"}});
+  }
+
+  /// A dash pattern given in pixels.
+  std::string dashes(double on, double off) const { return metres(on * px_) + ' ' + metres(off * px_); }
+
+  void circle(const Vector2& center, double radius, const char* fill, const char* stroke, double width,
+              const std::string& dashes = {}) {
+    if (!center.allFinite()) return;
+    svg_.element("circle", {{"cx", metres(center.x())},
+                            {"cy", metres(-center.y())},
+                            {"r", metres(radius)},
+                            {"fill", fill},
+                            {"stroke", stroke},
+                            {"stroke-width", metres(width * px_)},
+                            {"stroke-dasharray", dashes}});
+  }
+
+  void polygon(const Polyline& corners, const char* fill, const char* stroke, double width) {
+    std::string points;
+    for (const auto& corner : corners)
+      if (corner.allFinite()) points += metres(corner.x()) + ',' + metres(-corner.y()) + ' ';
+    if (points.empty()) return;
+    svg_.element("polygon", {{"points", points},
+                             {"fill", fill},
+                             {"stroke", stroke},
+                             {"stroke-width", metres(width * px_)},
+                             {"stroke-linejoin", "round"}});
+  }
+
+  /// A text whose font size is in pixels. Fonts smaller than one unit are drawn badly by some programs, so the text has a
+  /// coordinate system of its own in pixels.
+  void label(const Vector2& at, const std::string& content, double size, const char* colour, const char* anchor,
+             const Vector2& offset, const char* weight = "", bool halo = false) {
+    if (!at.allFinite()) return;
+    svg_.text(content, {{"transform", "translate(" + metres(at.x()) + ' ' + metres(-at.y()) + ") scale(" +
+                                          decimal(px_, 6) + ")"},
+                        {"x", pixels(offset.x())},
+                        {"y", pixels(offset.y())},
+                        {"font-size", pixels(size)},
+                        {"font-weight", weight},
+                        {"fill", colour},
+                        {"stroke", halo ? "#ffffff" : ""},
+                        {"stroke-width", halo ? "3" : ""},
+                        {"stroke-linejoin", halo ? "round" : ""},
+                        {"paint-order", halo ? "stroke" : ""},
+                        {"text-anchor", anchor}});
+  }
+
+ private:
+  SvgWriter& svg_;
+  double px_;
+};
+
+void draw_world(WorldLayer& layer, const DrawnWorld& world) {
+  for (const auto& polygon : world.polygons) layer.polygon(polygon, solid_colour, wall_colour, 1.5);
+  for (const auto& circle : world.circles) layer.circle(circle.center, circle.radius, solid_colour, wall_colour, 1.5);
+  for (const auto& [a, b] : world.walls) layer.line({a, b}, wall_colour, 3.5);
+}
+
+void draw_goal(WorldLayer& layer, const Vector2& at) {
+  layer.circle(at, 7.0 * layer.px(), "none", failure_colour, 1.8);
+  layer.circle(at, 2.2 * layer.px(), failure_colour, "none", 0.0);
+}
+
+void draw_closest(WorldLayer& layer, const Vector2& at) {
+  const double r = 5.5 * layer.px();
+  layer.polygon({at + Vector2(r, 0), at + Vector2(0, r), at + Vector2(-r, 0), at + Vector2(0, -r)}, "#ffd54a", ink, 1.2);
+}
+
+void draw_start(WorldLayer& layer, const Vector2& at, const char* colour) {
+  layer.circle(at, 4.5 * layer.px(), "#ffffff", colour, 2.2);
+}
+
+void draw_end(WorldLayer& layer, const Vector2& at, const char* colour) {
+  layer.circle(at, 4.5 * layer.px(), colour, "#ffffff", 1.2);
+}
+
+void draw_contact(WorldLayer& layer, const Vector2& at) {
+  const double r = 4.5 * layer.px();
+  layer.line({at + Vector2(-r, -r), at + Vector2(r, r)}, failure_colour, 2.4);
+  layer.line({at + Vector2(-r, r), at + Vector2(r, -r)}, failure_colour, 2.4);
+}
+
+void draw_route(WorldLayer& layer, const Polyline& route, const char* colour) {
+  layer.line(route, colour, 9.0, {}, "0.22");
+}
+
+void draw_odometry(WorldLayer& layer, const Polyline& path) {
+  layer.line(path, ink, 1.1, layer.dashes(3.0, 3.0));
+}
+
+void draw_truth(WorldLayer& layer, const Polyline& path, const char* colour) { layer.line(path, colour, 2.4); }
+
+/// A node of the graph that no route uses.
+void draw_node(WorldLayer& layer, const Vector2& at, std::size_t number) {
+  layer.circle(at, 8.5 * layer.px(), "#f1f4f7", "#a9b4bf", 1.3);
+  layer.label(at, std::to_string(number), 10.5, soft_ink, "middle", {0.0, 3.8});
+}
+
+/// A waypoint of a route: a dot on the route, and the number beside it where the driven path does not hide it.
+void draw_waypoint(WorldLayer& layer, const Vector2& at, std::size_t number) {
+  const Vector2 badge = at + layer.px() * Vector2(-15.0, 15.0);
+  layer.line({badge, at}, ink, 1.0);
+  layer.circle(at, 2.6 * layer.px(), ink, "#ffffff", 0.8);
+  layer.circle(badge, 9.0 * layer.px(), "#ffffff", ink, 1.3);
+  layer.label(badge, std::to_string(number), 11.0, ink, "middle", {0.0, 4.0}, "bold");
+}
+
+void draw_grid(WorldLayer& layer, const Bounds& bounds) {
+  const double step = round_step(std::max(bounds.width(), bounds.height()) / 12.0);
+  // Counted in whole steps: adding the step up would leave 0 drawn as 1e-17.
+  const auto first = [step](double low) { return static_cast<int>(std::ceil(low / step)); };
+  for (int i = first(bounds.low.x()); i * step <= bounds.high.x(); ++i) {
+    const double x = i * step;
+    layer.line({{x, bounds.low.y()}, {x, bounds.high.y()}}, "#e9edf1", 1.0);
+    layer.label({x, bounds.low.y()}, decimal(x, step < 1.0 ? 1 : 0), 10.0, soft_ink, "middle", {0.0, 14.0});
+  }
+  for (int i = first(bounds.low.y()); i * step <= bounds.high.y(); ++i) {
+    const double y = i * step;
+    layer.line({{bounds.low.x(), y}, {bounds.high.x(), y}}, "#e9edf1", 1.0);
+    layer.label({bounds.low.x(), y}, decimal(y, step < 1.0 ? 1 : 0), 10.0, soft_ink, "end", {-6.0, 3.5});
+  }
+}
+
+/// A scale bar that ends at `right`, its length a round number of metres near `target` pixels.
+void draw_scale(WorldLayer& layer, const Vector2& right, double target) {
+  const double length = round_step(target * layer.px());
+  const Vector2 left = right - Vector2(length, 0.0);
+  const Vector2 tick(0.0, 4.0 * layer.px());
+  layer.line({left + tick, left - tick, left, right, right - tick, right + tick}, ink, 1.5);
+  layer.label((left + right) / 2.0, length_text(length), 11.0, ink, "middle", {0.0, -7.0}, "", true);
+}
+
+bool on_a_route(const MapDrawing& drawing, const Vector2& point) {
+  const auto is_here = [&](const Vector2& other) { return (other - point).norm() < 1e-6; };
+  return std::any_of(drawing.robots.begin(), drawing.robots.end(), [&](const DrawnRobot& robot) {
+    return std::any_of(robot.route.begin(), robot.route.end(), is_here);
+  });
+}
+
+const char* colour_of(std::size_t robot) { return robot_colours[robot % robot_colours.size()]; }
+
+/// Half the side of the square around a goal that is worth enlarging: what happened there fills a good part of it.
+double detail_reach(const DrawnRobot& robot) {
+  double farthest = robot.tolerance;
+  if (robot.closest) farthest = std::max(farthest, (*robot.closest - *robot.goal).norm());
+  if (!robot.truth.empty()) farthest = std::max(farthest, (robot.truth.back() - *robot.goal).norm());
+  return std::clamp(2.2 * farthest, 0.5, 2.5);
+}
+
+bool has_detail(const DrawnRobot& robot) { return robot.goal && robot.goal->allFinite() && !robot.truth.empty(); }
+
+void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, double px) {
+  svg.element("rect", {{"x", metres(bounds.low.x())},
+                       {"y", metres(-bounds.high.y())},
+                       {"width", metres(bounds.width())},
+                       {"height", metres(bounds.height())},
+                       {"fill", "#ffffff"},
+                       {"stroke", "#d5dbe1"},
+                       {"stroke-width", metres(px)}});
+  WorldLayer layer(svg, px);
+  draw_grid(layer, bounds);
+  for (std::size_t i = 0; i < drawing.robots.size(); ++i) draw_route(layer, drawing.robots[i].route, colour_of(i));
+  draw_world(layer, drawing.world);
+
+  for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
+    if (!on_a_route(drawing, drawing.nodes[i])) draw_node(layer, drawing.nodes[i], i);
+
+  const double tolerance = px / 3.0;  // a third of a pixel
+  for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
+    const auto& robot = drawing.robots[i];
+    draw_truth(layer, simplified(robot.truth, tolerance), colour_of(i));
+    draw_odometry(layer, simplified(robot.odometry, tolerance));
+  }
+  for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
+    if (on_a_route(drawing, drawing.nodes[i])) draw_waypoint(layer, drawing.nodes[i], i);
+  for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
+    const auto& robot = drawing.robots[i];
+    if (drawing.nodes.empty())
+      for (std::size_t k = 0; k < robot.route.size(); ++k) draw_waypoint(layer, robot.route[k], k);
+    if (!robot.truth.empty()) draw_start(layer, robot.truth.front(), colour_of(i));
+    if (!robot.truth.empty()) draw_end(layer, robot.truth.back(), colour_of(i));
+    if (robot.goal) draw_goal(layer, *robot.goal);
+    if (robot.closest) draw_closest(layer, *robot.closest);
+    for (const auto& contact : robot.contacts) draw_contact(layer, contact);
+  }
+  draw_scale(layer, bounds.high + Vector2(0.0, 12.0 * px), 110.0);
+}
+
+/// The surroundings of a goal in a square whose upper left corner is at (x, y) of the viewBox, in metres of the map.
+void draw_detail(SvgWriter& svg, const MapDrawing& drawing, std::size_t index, double x, double y, double map_px) {
+  const auto& robot = drawing.robots[index];
+  const Vector2 goal = *robot.goal;
+  const double reach = detail_reach(robot);
+  const double px = 2.0 * reach / detail_size;
+  svg.open("svg", {{"x", metres(x)},
+                   {"y", metres(y)},
+                   {"width", metres(detail_size * map_px)},
+                   {"height", metres(detail_size * map_px)},
+                   {"viewBox", metres(goal.x() - reach) + ' ' + metres(-goal.y() - reach) + ' ' + metres(2.0 * reach) +
+                                   ' ' + metres(2.0 * reach)}});
+  svg.element("rect", {{"x", metres(goal.x() - reach)},
+                       {"y", metres(-goal.y() - reach)},
+                       {"width", metres(2.0 * reach)},
+                       {"height", metres(2.0 * reach)},
+                       {"fill", "#ffffff"}});
+  WorldLayer layer(svg, px);
+  draw_route(layer, robot.route, colour_of(index));
+  draw_world(layer, drawing.world);
+  layer.circle(goal, robot.tolerance, "none", success_colour, 1.4, layer.dashes(5.0, 4.0));
+  const double tolerance = px / 3.0;
+  draw_truth(layer, simplified(robot.truth, tolerance), colour_of(index));
+  draw_odometry(layer, simplified(robot.odometry, tolerance));
+  draw_goal(layer, goal);
+  draw_end(layer, robot.truth.back(), colour_of(index));
+  if (robot.closest) draw_closest(layer, *robot.closest);
+  for (const auto& contact : robot.contacts) draw_contact(layer, contact);
+  draw_scale(layer, goal + Vector2(reach - 12.0 * px, 14.0 * px - reach), 60.0);
+  layer.label(goal, "goal of " + robot.name, 11.5, ink, "start", {8.0 - detail_size / 2.0, 18.0 - detail_size / 2.0},
+              "bold", true);
+  svg.close("svg");
+  svg.element("rect", {{"x", metres(x)},
+                       {"y", metres(y)},
+                       {"width", metres(detail_size * map_px)},
+                       {"height", metres(detail_size * map_px)},
+                       {"fill", "none"},
+                       {"stroke", soft_ink},
+                       {"stroke-width", metres(map_px)}});
+}
+
+void draw_detail_frame(SvgWriter& svg, const DrawnRobot& robot, double px) {
+  const double reach = std::max(detail_reach(robot), 14.0 * px);
+  svg.element("rect", {{"x", metres(robot.goal->x() - reach)},
+                       {"y", metres(-robot.goal->y() - reach)},
+                       {"width", metres(2.0 * reach)},
+                       {"height", metres(2.0 * reach)},
+                       {"fill", "none"},
+                       {"stroke", soft_ink},
+                       {"stroke-width", metres(px)},
+                       {"stroke-dasharray", metres(3.0 * px) + ' ' + metres(2.0 * px)}});
+}
+
+void draw_header(SvgWriter& svg, const MapDrawing& drawing) {
+  svg.open("text", {{"x", pixels(margin)}, {"y", "36"}, {"font-size", "22"}, {"font-weight", "bold"}, {"fill", ink}});
+  svg.span(drawing.title, {});
+  svg.span(drawing.result, {{"dx", "14"}, {"fill", drawing.result == "success" ? success_colour : failure_colour}});
+  svg.close("text");
+  svg.text(drawing.subtitle, {{"x", pixels(margin)}, {"y", "58"}, {"font-size", "13"}, {"fill", soft_ink}});
+}
+
+/// The robots' figures from (margin, top) downwards, page pixels. Returns where they end.
+double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
+  double y = top;
+  for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
+    const auto& robot = drawing.robots[i];
+    y += line_height;
+    svg.open("text", {{"x", pixels(margin)}, {"y", pixels(y)}, {"font-size", "13"}, {"fill", ink}});
+    svg.span(robot.name, {{"font-weight", "bold"}, {"fill", colour_of(i)}});
+    svg.span(robot.reached ? "reached the goal" : "did not reach the goal",
+             {{"dx", "8"}, {"font-weight", "bold"}, {"fill", robot.reached ? success_colour : failure_colour}});
+    svg.close("text");
+    // Two columns of label and value.
+    for (std::size_t k = 0; k < robot.figures.size(); ++k) {
+      const double x = margin + (k % 2 == 0 ? 0.0 : 205.0);
+      if (k % 2 == 0) y += line_height;
+      svg.text(robot.figures[k].first, {{"x", pixels(x)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", soft_ink}});
+      svg.text(robot.figures[k].second, {{"x", pixels(x + 185.0)},
+                                         {"y", pixels(y)},
+                                         {"font-size", "12"},
+                                         {"fill", ink},
+                                         {"text-anchor", "end"}});
+    }
+    y += 8.0;
+  }
+  return y;
+}
+
+/// What the lines and marks mean, in two columns from (margin, top) downwards, page pixels. Returns where it ends.
+double draw_legend(SvgWriter& svg, double top) {
+  WorldLayer layer(svg, 1.0);
+  const char* colour = robot_colours[0];
+  struct Entry {
+    const char* text;
+    void (*draw)(WorldLayer&, const Polyline&, const char*);  // given the two ends of a sample line
+  };
+  const std::array<Entry, 8> entries{{
+      {"driven, truth", [](WorldLayer& l, const Polyline& p, const char* c) { draw_truth(l, p, c); }},
+      {"goal", [](WorldLayer& l, const Polyline& p, const char*) { draw_goal(l, (p[0] + p[1]) / 2.0); }},
+      {"driven, by odometry", [](WorldLayer& l, const Polyline& p, const char*) { draw_odometry(l, p); }},
+      {"tolerance",
+       [](WorldLayer& l, const Polyline& p, const char*) {
+         l.circle((p[0] + p[1]) / 2.0, 6.5, "none", success_colour, 1.4, l.dashes(5.0, 4.0));
+       }},
+      {"planned route", [](WorldLayer& l, const Polyline& p, const char* c) { draw_route(l, p, c); }},
+      {"closest approach", [](WorldLayer& l, const Polyline& p, const char*) { draw_closest(l, (p[0] + p[1]) / 2.0); }},
+      {"start and end",
+       [](WorldLayer& l, const Polyline& p, const char* c) {
+         draw_start(l, p[0] + Vector2(5.0, 0.0), c);
+         draw_end(l, p[1] - Vector2(5.0, 0.0), c);
+       }},
+      {"contact", [](WorldLayer& l, const Polyline& p, const char*) { draw_contact(l, (p[0] + p[1]) / 2.0); }},
+  }};
+  double y = top;
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    const double x = margin + (i % 2 == 0 ? 0.0 : 205.0);
+    if (i % 2 == 0) y += line_height;
+    // The layer turns y around, as for the world.
+    entries[i].draw(layer, {{x + 2.0, -(y - 4.0)}, {x + 30.0, -(y - 4.0)}}, colour);
+    svg.text(entries[i].text, {{"x", pixels(x + 40.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}});
+  }
+  return y;
+}
+
+}  // namespace
+
+std::string to_svg(const MapDrawing& drawing) {
+  const Bounds bounds = bounds_of(drawing);
+  const double px = std::max(bounds.width() / map_width, bounds.height() / map_height);
+  const double map_bottom = header + bounds.height() / px + gap;
+
+  // The foot of the page is laid out first, because the page's height depends on it.
+  SvgWriter foot;
+  const double text_bottom = draw_legend(foot, draw_figures(foot, drawing, map_bottom - 6.0) + 4.0);
+  std::vector<std::size_t> details;
+  for (std::size_t i = 0; i < drawing.robots.size() && details.size() < most_details; ++i)
+    if (has_detail(drawing.robots[i])) details.push_back(i);
+  const bool beside = details.size() <= 2;  // the text takes the width of two details
+  const double details_top = beside ? map_bottom : text_bottom + gap;
+  const double details_bottom = details.empty() ? 0.0 : details_top + detail_size;
+  const double page_height = std::max(text_bottom, details_bottom) + margin;
+
+  const double centring = (map_width - bounds.width() / px) / 2.0;
+  const Vector2 corner(bounds.low.x() - (margin + centring) * px, -bounds.high.y() - header * px);  // of the viewBox
+  const auto at_page = [&](double x, double y) { return Vector2(corner + px * Vector2(x, y)); };
+
+  SvgWriter svg;
+  svg.open("svg", {{"xmlns", "http://www.w3.org/2000/svg"},
+                   {"width", pixels(page_width)},
+                   {"height", pixels(page_height)},
+                   {"viewBox", metres(corner.x()) + ' ' + metres(corner.y()) + ' ' + metres(page_width * px) + ' ' +
+                                   metres(page_height * px)},
+                   {"font-family", fonts}});
+  svg.element("rect", {{"x", metres(corner.x())},
+                       {"y", metres(corner.y())},
+                       {"width", metres(page_width * px)},
+                       {"height", metres(page_height * px)},
+                       {"fill", "#fafbfc"}});
+  draw_map(svg, drawing, bounds, px);
+  for (std::size_t i = 0; i < details.size(); ++i) {
+    draw_detail_frame(svg, drawing.robots[details[i]], px);
+    const double from_right = static_cast<double>(details.size() - i) * (detail_size + detail_gap) - detail_gap;
+    const Vector2 at = at_page(page_width - margin - from_right, details_top);
+    draw_detail(svg, drawing, details[i], at.x(), at.y(), px);
+  }
+  svg.open("g", {{"transform", "translate(" + metres(corner.x()) + ' ' + metres(corner.y()) + ") scale(" +
+                                   decimal(px, 6) + ")"}});
+  draw_header(svg, drawing);
+  svg.append(foot);
+  svg.close("g");
+  svg.close("svg");
+  return svg.document();
+}
+
+}  // namespace kervan::observe

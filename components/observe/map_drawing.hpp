@@ -1,0 +1,56 @@
+/// A run as a picture: the world, what was planned, what was driven, and how near the goal it came.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "components/observe/polyline.hpp"
+#include "framework/geometry/pose2.hpp"
+
+namespace kervan::observe {
+
+/// Everything is in metres in the map frame.
+struct DrawnCircle {
+  geometry::Vector2 center = geometry::Vector2::Zero();
+  double radius = 0.0;
+};
+
+struct DrawnWorld {
+  std::vector<std::pair<geometry::Vector2, geometry::Vector2>> walls;
+  std::vector<DrawnCircle> circles;
+  std::vector<Polyline> polygons;  ///< solid; the last corner joins the first
+};
+
+/// One robot's run. What is empty or absent is not drawn.
+struct DrawnRobot {
+  std::string name;
+  Polyline route;     ///< as planned
+  Polyline truth;     ///< as driven
+  Polyline odometry;  ///< as the robot believes it has driven
+  std::optional<geometry::Vector2> goal;
+  double tolerance = 0.10;                   ///< around the goal
+  std::optional<geometry::Vector2> closest;  ///< where it came nearest to the goal
+  std::vector<geometry::Vector2> contacts;   ///< where it touched something
+  bool reached = false;
+  std::vector<std::pair<std::string, std::string>> figures;  ///< label and value, shown beside the map
+};
+
+struct MapDrawing {
+  std::string title;
+  std::string result;    ///< "success", "failed", "aborted"; shown in its colour beside the title
+  std::string subtitle;  ///< one line under the title
+  DrawnWorld world;
+  Polyline nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, the routes' waypoints are numbered
+  std::vector<DrawnRobot> robots;
+};
+
+/// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in SVG, a
+/// point (x, y) of the map is drawn at (x, -y). Beside the map stand the legend, the robots' figures and, for up to three
+/// robots, the surroundings of the goal enlarged. Points that are not finite are left out. Equal drawings give equal
+/// bytes.
+std::string to_svg(const MapDrawing& drawing);
+
+}  // namespace kervan::observe

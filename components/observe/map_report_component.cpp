@@ -1,0 +1,183 @@
+#include <spdlog/logger.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "components/observe/decimal.hpp"
+#include "components/observe/map_drawing.hpp"
+#include "components/observe/trajectory_csv.hpp"
+#include "components/plane_messages.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/PoseStamped.hpp"
+#include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/MissionResult.hpp"
+#include "kervan_msgs/msg/Outline.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+#include "nav_msgs/msg/Path.hpp"
+
+namespace kervan::observe {
+namespace {
+
+using namespace std::chrono_literals;
+using kervan_msgs::msg::MissionOutcome;
+
+struct MapReportParams {
+  std::vector<std::string> robots;
+  std::vector<geometry::Vector2> nodes;
+  std::string title = "map";
+  double tolerance = 0.10;
+  Duration period = 100ms;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(robots, "robots", {.help = "Names of the robots to record.", .required = true});
+    v(nodes, "nodes", {.unit = "m", .help = "Waypoints to draw with their numbers; none: those of the routes."});
+    v(title, "title", {.help = "Headline of the drawing."});
+    v(tolerance, "tolerance", {.unit = "m", .min = 0.001, .max = 100.0, .help = "Radius of the circle around a goal."});
+    v(period, "period", {.min = 0.001, .max = 60.0, .help = "Time between two rows of a robot."});
+  }
+};
+
+DrawnWorld drawn(const kervan_msgs::msg::Outline& outline) {
+  DrawnWorld world;
+  for (const auto& s : outline.segments) world.walls.push_back({{s.x1, s.y1}, {s.x2, s.y2}});
+  for (const auto& c : outline.circles) world.circles.push_back({{c.x, c.y}, c.radius});
+  for (const auto& polygon : outline.polygons) {
+    Polyline corners;
+    for (const auto& corner : polygon.corners) corners.emplace_back(corner.x, corner.y);
+    world.polygons.push_back(std::move(corners));
+  }
+  return world;
+}
+
+/// One robot: its ports, and what it has done so far.
+class Subject {
+ public:
+  Subject(Component* owner, const std::string& name)
+      : truth_(owner, name + "/truth", qos::state, "True pose and speed of " + name + "."),
+        odom_(owner, name + "/odom", qos::sensor.optional(), "Where " + name + " believes to be."),
+        route_(owner, name + "/route", qos::latched.optional(), "What is planned for " + name + "."),
+        goal_(owner, name + "/goal", qos::latched.optional(), "Where " + name + " is to go."),
+        contact_(owner, name + "/contact", qos::event.optional(), "Every touch of " + name + ".") {
+    drawn_.name = name;
+  }
+
+  /// Takes the newest samples and appends a row to `table`; nothing while the truth is unknown.
+  void look(double time, std::ostream& table) {
+    for (const auto& contact : contact_.take()) drawn_.contacts.emplace_back(contact->point.x, contact->point.y);
+    const auto* truth = truth_.latest();
+    if (!truth) return;
+    TrajectoryRow row{time, drawn_.name, components::pose_of(truth->pose.pose), std::nullopt,
+                      components::twist_of(truth->twist.twist)};
+    drawn_.truth.push_back(row.truth.position());
+    if (const auto* odometry = odom_.latest()) {
+      row.odom = components::pose_of(odometry->pose.pose);
+      drawn_.odometry.push_back(row.odom->position());
+    }
+    if (table) table << to_csv(row) << '\n';
+  }
+
+  DrawnRobot drawing(double tolerance, const kervan_msgs::msg::MissionResult* result) const {
+    DrawnRobot robot = drawn_;
+    robot.tolerance = tolerance;
+    if (const auto* route = route_.latest())
+      for (const auto& pose : route->poses) robot.route.push_back(components::position_of(pose.pose));
+    if (const auto* goal = goal_.latest()) mark_goal(robot, components::position_of(goal->pose));
+    if (result)
+      for (const auto& figures : result->robots)
+        if (figures.robot == robot.name) add_figures(robot, figures);
+    return robot;
+  }
+
+ private:
+  static void mark_goal(DrawnRobot& robot, const geometry::Vector2& goal) {
+    robot.goal = goal;
+    const auto nearer = [&goal](const geometry::Vector2& a, const geometry::Vector2& b) {
+      return (a - goal).norm() < (b - goal).norm();
+    };
+    const auto closest = std::min_element(robot.truth.begin(), robot.truth.end(), nearer);
+    if (closest != robot.truth.end()) robot.closest = *closest;
+  }
+
+  static void add_figures(DrawnRobot& robot, const kervan_msgs::msg::RobotResult& figures) {
+    robot.reached = figures.reached;
+    robot.figures = {{"error", decimal(figures.error_m, 3) + " m"},
+                     {"time", decimal(figures.time_s, 1) + " s"},
+                     {"path", decimal(figures.path_m, 2) + " m"},
+                     {"contacts", std::to_string(figures.contacts)}};
+    if (std::isfinite(figures.min_clearance_m))
+      robot.figures.emplace_back("least clearance", decimal(figures.min_clearance_m, 3) + " m");
+    if (robot.goal && robot.closest)
+      robot.figures.emplace_back("closest approach", decimal((*robot.closest - *robot.goal).norm(), 3) + " m");
+  }
+
+  DrawnRobot drawn_;
+  Input<nav_msgs::msg::Odometry> truth_;
+  Input<nav_msgs::msg::Odometry> odom_;
+  Input<nav_msgs::msg::Path> route_;
+  Input<geometry_msgs::msg::PoseStamped> goal_;
+  Input<kervan_msgs::msg::Contact> contact_;
+};
+
+/// Writes trajectory.csv while the run goes on and map.svg at its end, into the run's folder. What it does not receive it
+/// leaves out; without a folder it writes nothing.
+class MapReportComponent final : public Component {
+  MapReportParams params_ = parameters<MapReportParams>();
+  std::deque<Subject> robots_ = subjects();
+  Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), "True shape of the world."};
+  Input<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched.optional(), "How the mission ended."};
+  Timer tick_{this, params_.period, &MapReportComponent::on_tick};
+  std::ofstream table_;
+  Time started_{};
+
+  std::deque<Subject> subjects() {
+    std::deque<Subject> robots;
+    for (const auto& name : params_.robots) robots.emplace_back(this, name);
+    return robots;
+  }
+
+  void on_activate(Time now) override {
+    started_ = now;
+    if (run_folder().empty()) return;
+    table_.open(run_folder() / "trajectory.csv");
+    table_ << trajectory_header << '\n';
+    if (!table_) report_degraded("trajectory.csv cannot be written in " + run_folder().string());
+  }
+
+  void on_tick(Time now) {
+    for (auto& robot : robots_) robot.look(seconds(now - started_), table_);
+  }
+
+  void on_shutdown(Time now) override {
+    if (run_folder().empty()) return;
+    for (auto& robot : robots_) robot.look(seconds(now - started_), table_);
+    table_.close();
+    MapDrawing drawing;
+    drawing.title = params_.title;
+    drawing.nodes = params_.nodes;
+    if (const auto* world = world_.latest()) drawing.world = drawn(*world);
+    const auto* result = result_.latest();
+    drawing.result = !result                                              ? "aborted"
+                     : result->result == MissionOutcome::MISSION_SUCCESS ? "success"
+                     : result->result == MissionOutcome::MISSION_FAILED  ? "failed"
+                                                                          : "aborted";
+    drawing.subtitle = "ended after " + decimal(seconds(now - started_), 1) + " s";
+    if (result && !result->reason.empty()) drawing.subtitle += ": " + result->reason;
+    for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));
+    std::ofstream map(run_folder() / "map.svg");
+    map << to_svg(drawing);
+    map.close();
+    if (!table_ || !map) log().error("trajectory.csv or map.svg could not be written in {}", run_folder().string());
+  }
+};
+
+}  // namespace
+}  // namespace kervan::observe
+
+KERVAN_COMPONENT(kervan::observe::MapReportComponent, "observe/map_report",
+                 "Writes the driven paths as trajectory.csv and a drawing of the run as map.svg.")

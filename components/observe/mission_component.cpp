@@ -1,0 +1,180 @@
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "components/observe/decimal.hpp"
+#include "components/observe/mission_score.hpp"
+#include "components/plane_messages.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/PoseStamped.hpp"
+#include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/MissionResult.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+
+namespace kervan::observe {
+namespace {
+
+using namespace std::chrono_literals;
+using kervan_msgs::msg::MissionOutcome;
+
+struct RobotGoals {
+  std::vector<geometry::Vector2> at;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(at, "at", {.unit = "m", .help = "Goals in the map, to be reached in this order.", .required = true});
+  }
+};
+
+struct MissionComponentParams {
+  std::map<std::string, RobotGoals> goals;
+  MissionParams mission;
+  Duration period = 20ms;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(goals, "goals", {.help = "What each robot has to reach, by the robot's name.", .required = true});
+    v(mission.tolerance, "tolerance",
+      {.unit = "m", .min = 0.001, .max = 100.0, .help = "A robot standing this near to its goal has reached it."});
+    v(mission.timeout, "timeout", {.min = 0.1, .max = 1e6, .help = "After this the mission has failed."});
+    v(mission.rest_time, "rest_time", {.min = 0.0, .max = 60.0, .help = "How long a robot must stand at a goal."});
+    v(period, "period", {.min = 0.001, .max = 1.0, .help = "Time between two looks at the robots."});
+  }
+};
+
+/// One robot of the mission: its ports and its score.
+class Contender {
+ public:
+  Contender(Component* owner, const std::string& name, const MissionParams& params)
+      : name_(name),
+        params_(params),
+        truth_(owner, name + "/truth", qos::state, "True pose and speed of " + name + "."),
+        contact_(owner, name + "/contact", qos::event, "Every touch of " + name + "."),
+        goal_(owner, name + "/goal", qos::latched, "Where " + name + " is to go.") {}
+
+  void start(Time now) {
+    score_.emplace(params_, now);
+    publish_goal(now);
+  }
+
+  void look(Time now) {
+    const std::size_t goal = score_->figures().goal;
+    for ([[maybe_unused]] const auto& contact : contact_.take()) score_->contact();
+    for (const auto& truth : truth_.take()) {
+      score_->truth(now, components::pose_of(truth->pose.pose), components::twist_of(truth->twist.twist));
+    }
+    score_->tick(now);
+    if (score_->figures().goal != goal) publish_goal(now);
+  }
+
+  const MissionScore& score() const { return *score_; }
+  bool reached() const { return score_->figures().outcome == observe::MissionOutcome::reached; }
+  const std::string& name() const { return name_; }
+  std::string missing() const { return truth_.missing(); }
+
+  kervan_msgs::msg::RobotResult result() const {
+    const MissionFigures& figures = score_->figures();
+    kervan_msgs::msg::RobotResult result;
+    result.robot = name_;
+    result.reached = reached();
+    result.error_m = figures.error;
+    result.time_s = figures.time;
+    result.path_m = figures.path;
+    result.contacts = figures.contacts;
+    result.min_clearance_m = figures.min_clearance.value_or(std::numeric_limits<double>::quiet_NaN());
+    return result;
+  }
+
+ private:
+  void publish_goal(Time now) {
+    geometry_msgs::msg::PoseStamped goal;
+    components::set_header(goal.header, now, "map");
+    goal.pose = components::to_message(geometry::Pose2{score_->goal().x(), score_->goal().y(), 0.0});
+    goal_.publish(goal);
+  }
+
+  std::string name_;
+  MissionParams params_;
+  Input<nav_msgs::msg::Odometry> truth_;
+  Input<kervan_msgs::msg::Contact> contact_;
+  Output<geometry_msgs::msg::PoseStamped> goal_;
+  std::optional<MissionScore> score_;
+};
+
+/// Sends robots to their goals and judges them on the simulator's truth (mission_score.hpp). Ends the run when all have
+/// arrived or the time is up; a run that is ended from outside before that is `aborted`.
+class MissionComponent final : public Component {
+  MissionComponentParams params_ = parameters<MissionComponentParams>();
+  std::deque<Contender> robots_ = contenders();
+  Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "How the mission ended."};
+  Timer tick_{this, params_.period, &MissionComponent::on_tick};
+  bool judged_ = false;
+
+  std::deque<Contender> contenders() {
+    if (params_.goals.empty()) throw ParameterError("goals", "no robot has a goal");
+    std::deque<Contender> robots;
+    for (const auto& [name, goals] : params_.goals) {
+      if (goals.at.empty()) throw ParameterError("goals." + name + ".at", "there is no goal in it");
+      MissionParams mission = params_.mission;
+      mission.goals = goals.at;
+      robots.emplace_back(this, name, mission);
+    }
+    return robots;
+  }
+
+  void on_activate(Time now) override {
+    for (auto& robot : robots_) robot.start(now);
+  }
+
+  void on_tick(Time now) {
+    if (judged_) return;
+    bool ended = true, reached = true;
+    std::string missing;
+    for (auto& robot : robots_) {
+      robot.look(now);
+      ended = ended && robot.score().ended();
+      reached = reached && robot.reached();
+      if (missing.empty()) missing = robot.missing();
+    }
+    missing.empty() ? report_active() : report_degraded(missing);
+    if (!ended) return;
+    publish_result(now, reached ? MissionOutcome::MISSION_SUCCESS : MissionOutcome::MISSION_FAILED, reason());
+    finish(reached ? "every robot has reached its goal" : reason());
+  }
+
+  void on_deactivate(Time now) override {
+    if (!judged_) publish_result(now, MissionOutcome::MISSION_ABORTED, "the run was ended before the mission was over");
+  }
+
+  /// Who did not arrive and how far away it was; empty if all did.
+  std::string reason() const {
+    std::string text;
+    for (const auto& robot : robots_) {
+      if (robot.reached()) continue;
+      text += text.empty() ? "the time is up: " : ", ";
+      text += robot.name() + " is " + decimal(robot.score().figures().error, 2) + " m from its goal";
+    }
+    return text;
+  }
+
+  void publish_result(Time now, MissionOutcome outcome, const std::string& why) {
+    judged_ = true;
+    kervan_msgs::msg::MissionResult result;
+    components::set_header(result.header, now, "map");
+    result.result = outcome;
+    result.reason = why;
+    for (const auto& robot : robots_) result.robots.push_back(robot.result());
+    result_.publish(result);
+  }
+};
+
+}  // namespace
+}  // namespace kervan::observe
+
+KERVAN_COMPONENT(kervan::observe::MissionComponent, "observe/mission",
+                 "Sends robots to their goals, judges them on the truth, and ends the run.")

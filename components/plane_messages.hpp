@@ -1,0 +1,59 @@
+/// Poses, speeds and times of the plane as the ROS 2 messages carry them. What the plane does not have (z, roll, pitch) is
+/// ignored on the way in and zero on the way out.
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "builtin_interfaces/msg/Time.hpp"
+#include "framework/component/time.hpp"
+#include "framework/geometry/pose2.hpp"
+#include "geometry_msgs/msg/Pose.hpp"
+#include "geometry_msgs/msg/Twist.hpp"
+#include "std_msgs/msg/Header.hpp"
+
+namespace kervan::components {
+
+inline builtin_interfaces::msg::Time to_message(Time time) {
+  constexpr std::int64_t second = 1'000'000'000;
+  const std::int64_t since = time.time_since_epoch().count();
+  const std::int64_t part = (since % second + second) % second;  // nanosec is always added, before the epoch too
+  builtin_interfaces::msg::Time message;
+  message.sec = static_cast<std::int32_t>((since - part) / second);
+  message.nanosec = static_cast<std::uint32_t>(part);
+  return message;
+}
+
+inline void set_header(std_msgs::msg::Header& header, Time stamp, const std::string& frame) {
+  header.stamp = to_message(stamp);
+  header.frame_id = frame;
+}
+
+inline geometry::Vector2 position_of(const geometry_msgs::msg::Pose& pose) { return {pose.position.x, pose.position.y}; }
+
+inline geometry::Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
+  const auto& q = pose.orientation;
+  return {pose.position.x, pose.position.y,
+          std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))};
+}
+
+inline geometry::Twist2 twist_of(const geometry_msgs::msg::Twist& twist) { return {twist.linear.x, twist.angular.z}; }
+
+inline geometry_msgs::msg::Pose to_message(const geometry::Pose2& pose) {
+  geometry_msgs::msg::Pose message;
+  message.position.x = pose.x;
+  message.position.y = pose.y;
+  message.orientation.z = std::sin(0.5 * pose.yaw);
+  message.orientation.w = std::cos(0.5 * pose.yaw);
+  return message;
+}
+
+inline geometry_msgs::msg::Twist to_message(const geometry::Twist2& twist) {
+  geometry_msgs::msg::Twist message;
+  message.linear.x = twist.linear;
+  message.angular.z = twist.angular;
+  return message;
+}
+
+}  // namespace kervan::components

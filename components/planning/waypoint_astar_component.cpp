@@ -1,0 +1,109 @@
+#include <stdexcept>
+#include <string>
+
+#include "components/plane_messages.hpp"
+#include "components/planning/waypoint_astar.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/PoseStamped.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+#include "nav_msgs/msg/Path.hpp"
+
+namespace kervan::planning {
+namespace {
+
+struct WaypointAstarParams {
+  std::vector<geometry::Vector2> nodes;
+  std::vector<std::pair<std::int64_t, std::int64_t>> edges;
+  std::vector<double> costs;
+  double reach = 1.0;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(nodes, "nodes", {.unit = "m", .help = "Waypoints in the map, numbered from 0.", .required = true});
+    v(edges, "edges", {.help = "Pairs of waypoints joined by a free straight line.", .required = true});
+    v(costs, "costs", {.unit = "m", .min = 0.0, .help = "One for each edge, at least its length; none: the lengths."});
+    v(reach, "reach", {.unit = "m", .min = 0.0, .max = 100.0, .help = "Farthest start and goal may lie from a waypoint."});
+  }
+};
+
+WaypointGraph graph_of(const WaypointAstarParams& params) {
+  if (!params.costs.empty() && params.costs.size() != params.edges.size())
+    throw ParameterError("costs", std::to_string(params.costs.size()) + " costs for " +
+                                      std::to_string(params.edges.size()) + " edges; allowed: one for each, or none");
+  WaypointGraph graph(params.nodes);
+  for (std::size_t i = 0; i < params.edges.size(); ++i) {
+    // A negative number becomes one far beyond the last node and is refused as such.
+    const auto a = static_cast<std::size_t>(params.edges[i].first), b = static_cast<std::size_t>(params.edges[i].second);
+    try {
+      params.costs.empty() ? graph.connect(a, b) : graph.connect(a, b, params.costs[i]);
+    } catch (const std::invalid_argument& error) {
+      throw ParameterError("edges[" + std::to_string(i) + "]", error.what());
+    }
+  }
+  return graph;
+}
+
+const char* why_not(RouteStatus status) {
+  switch (status) {
+    case RouteStatus::found: return "";
+    case RouteStatus::no_path: return "no route: no edges lead from the start to the goal";
+    case RouteStatus::start_off_graph: return "no route: no waypoint is within reach of the robot";
+    case RouteStatus::goal_off_graph: return "no route: no waypoint is within reach of the goal";
+  }
+  return "";
+}
+
+/// Plans once for every goal, from where the robot is then. A goal without a route gives an empty route and `degraded`.
+class WaypointAstarComponent final : public Component {
+  WaypointAstarParams params_ = parameters<WaypointAstarParams>();
+  WaypointGraph graph_ = graph_of(params_);
+  Input<geometry_msgs::msg::PoseStamped> goal_{this, "goal", qos::latched, &WaypointAstarComponent::on_goal,
+                                               "Where the robot is to go, in the map."};
+  Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor, &WaypointAstarComponent::on_odometry,
+                                       "Where the robot is."};
+  Output<nav_msgs::msg::Path> route_{this, "route", qos::latched, "Waypoints to the goal; empty: there is no route."};
+  geometry_msgs::msg::PoseStamped wanted_;
+  bool pending_ = false;
+
+  void on_goal(const geometry_msgs::msg::PoseStamped& goal, Time now) {
+    wanted_ = goal;
+    pending_ = true;
+    if (const auto* odometry = odom_.latest())
+      plan(*odometry, now);
+    else
+      report_degraded(odom_.missing());
+  }
+
+  void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
+    if (pending_) plan(odometry, now);
+  }
+
+  void plan(const nav_msgs::msg::Odometry& odometry, Time now) {
+    pending_ = false;
+    const geometry::Vector2 goal = components::position_of(wanted_.pose);
+    const Route route = find_route(graph_, components::position_of(odometry.pose.pose), goal, params_.reach);
+
+    nav_msgs::msg::Path path;
+    components::set_header(path.header, now, wanted_.header.frame_id);
+    const auto add = [&path](const geometry::Vector2& at) {
+      path.poses.emplace_back();
+      path.poses.back().header = path.header;
+      path.poses.back().pose = components::to_message(geometry::Pose2{at.x(), at.y(), 0.0});
+    };
+    for (const std::size_t node : route.nodes) add(graph_.position(node));
+    // The goal need not be a waypoint; the last metres to it are driven straight.
+    if (route.status == RouteStatus::found && (graph_.position(route.nodes.back()) - goal).norm() > 1e-3) add(goal);
+    route_.publish(path);
+
+    if (route.status == RouteStatus::found)
+      report_active();
+    else
+      report_degraded(why_not(route.status));
+  }
+};
+
+}  // namespace
+}  // namespace kervan::planning
+
+KERVAN_COMPONENT(kervan::planning::WaypointAstarComponent, "planning/waypoint_astar",
+                 "Plans the shortest way over a graph of waypoints.")

@@ -1,0 +1,45 @@
+#include "components/safety/drive_guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kervan::safety {
+namespace {
+
+/// The value nearest to `target` that can be reached from `value` when its magnitude grows by at most `up` and falls by at
+/// most `down`. It stops at zero before it changes sign, because the two sides of zero have different limits.
+double approach(double value, double target, double up, double down) {
+  if (value < 0.0) return -approach(-value, -target, up, down);
+  if (target >= value) return std::min(target, value + up);
+  if (value == 0.0) return std::max(target, -up);
+  return std::max({target, value - down, 0.0});
+}
+
+}  // namespace
+
+bool DriveGuard::command(Time received, const geometry::Twist2& wanted) {
+  if (!std::isfinite(wanted.linear) || !std::isfinite(wanted.angular)) {
+    ++refused_;
+    return false;
+  }
+  wanted_ = {std::clamp(wanted.linear, -params_.max_speed, params_.max_speed),
+             std::clamp(wanted.angular, -params_.max_turn, params_.max_turn)};
+  received_ = received;
+  return true;
+}
+
+geometry::Twist2 DriveGuard::step(Time now) {
+  const bool fresh = received_ && now + params_.period <= *received_ + params_.timeout;
+  if (fresh)
+    state_ = DriveState::following;
+  else if (received_)
+    state_ = DriveState::braking;
+  const geometry::Twist2 target = fresh ? wanted_ : geometry::Twist2{};
+  const double dt = seconds(params_.period);
+  output_.linear = approach(output_.linear, target.linear, params_.acceleration * dt, params_.deceleration * dt);
+  output_.angular =
+      approach(output_.angular, target.angular, params_.turn_acceleration * dt, params_.turn_acceleration * dt);
+  return output_;
+}
+
+}  // namespace kervan::safety

@@ -1,0 +1,78 @@
+#include <spdlog/logger.h>
+
+#include "components/plane_messages.hpp"
+#include "components/safety/drive_guard.hpp"
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/TwistStamped.hpp"
+
+namespace kervan::safety {
+namespace {
+
+struct DriveGuardComponentParams {
+  DriveGuardParams guard;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(guard.period, "period", {.min = 0.005, .max = 0.2, .help = "Time between two commands to the drive."});
+    v(guard.timeout, "timeout", {.min = 0.01, .max = 5.0, .help = "Brakes no later than this after the last command."});
+    v(guard.max_speed, "max_speed", {.unit = "m/s", .min = 0.0, .max = 5.0, .help = "Highest speed, either way."});
+    v(guard.max_turn, "max_turn", {.unit = "rad/s", .min = 0.0, .max = 20.0, .help = "Highest turning rate."});
+    v(guard.acceleration, "acceleration", {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Speeding up."});
+    v(guard.deceleration, "deceleration", {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Full braking."});
+    v(guard.turn_acceleration, "turn_acceleration",
+      {.unit = "rad/s2", .min = 0.01, .max = 100.0, .help = "Change of the turning rate."});
+  }
+};
+
+/// Stands between whoever steers and the drive (drive_guard.hpp): commands come as they like and leave at a steady rate.
+class DriveGuardComponent final : public Component {
+  DriveGuardComponentParams params_ = checked(parameters<DriveGuardComponentParams>());
+  DriveGuard guard_{params_.guard};
+  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw", qos::command, &DriveGuardComponent::on_command,
+                                                  "Speed that the controller wants."};
+  Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel", qos::command, "Speed for the drive."};
+  Timer tick_{this, params_.guard.period, &DriveGuardComponent::on_tick};
+  std::string frame_;
+  bool last_refused_ = false;
+
+  static DriveGuardComponentParams checked(DriveGuardComponentParams params) {
+    if (params.guard.timeout < params.guard.period)
+      throw ParameterError("timeout", "it is shorter than the period, so no command would ever be driven");
+    return params;
+  }
+
+  void on_command(const geometry_msgs::msg::TwistStamped& wanted, Time now) {
+    last_refused_ = !guard_.command(now, components::twist_of(wanted.twist));
+    frame_ = wanted.header.frame_id;
+  }
+
+  void on_tick(Time now) {
+    publish(now, guard_.step(now));
+    if (last_refused_)
+      report_degraded("cmd_vel_raw: refused a command that is not finite");
+    else if (guard_.state() == DriveState::following)
+      report_active();
+    else
+      report_degraded(guard_.state() == DriveState::waiting ? "cmd_vel_raw: nothing received yet"
+                                                            : "cmd_vel_raw: no fresh command, braking");
+  }
+
+  void on_deactivate(Time now) override { publish(now, {}); }
+
+  void on_shutdown(Time) override {
+    if (guard_.refused() > 0) log().warn("refused {} commands that were not finite", guard_.refused());
+  }
+
+  void publish(Time now, const geometry::Twist2& twist) {
+    auto message = cmd_vel_.loan();
+    components::set_header(message->header, now, frame_);
+    message->twist = components::to_message(twist);
+    cmd_vel_.publish(std::move(message));
+  }
+};
+
+}  // namespace
+}  // namespace kervan::safety
+
+KERVAN_COMPONENT(kervan::safety::DriveGuardComponent, "safety/drive_guard",
+                 "Limits a robot's commands, and brakes when they stop coming.")

@@ -1,0 +1,122 @@
+// kervan check: everything about a composition that can be known without running it.
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "deploy/cli/prepare.hpp"
+#include "deploy/cli/table.hpp"
+#include "deploy/cli/verbs.hpp"
+
+namespace kervan::cli {
+namespace {
+
+using composition::Finding;
+using composition::PortReference;
+using composition::ResolvedComposition;
+using composition::ResolvedTopic;
+using composition::Severity;
+using nlohmann::ordered_json;
+
+std::size_t count(const ResolvedComposition& composition, Severity severity) {
+  return static_cast<std::size_t>(std::count_if(composition.findings.begin(), composition.findings.end(),
+                                                [&](const Finding& finding) { return finding.severity == severity; }));
+}
+
+std::string counted(std::size_t number, const std::string& noun) {
+  return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
+}
+
+std::vector<std::string> names(const ResolvedComposition& composition, const std::vector<PortReference>& ports) {
+  std::vector<std::string> names;
+  for (const PortReference port : ports) names.push_back(composition.port_name(port));
+  return names;
+}
+
+ordered_json qos_json(const ResolvedTopic& topic) {
+  ordered_json values = ordered_json::object();
+  for (const auto& value : topic.qos.values) values[value.name] = {{"value", value.value}, {"from", value.origin}};
+  return values;
+}
+
+ordered_json topic_json(const ResolvedComposition& composition, const ResolvedTopic& topic) {
+  return {{"topic", topic.name},
+          {"type", topic.type},
+          {"profile", topic.qos.profile.name},
+          {"qos", qos_json(topic)},
+          {"writers", names(composition, topic.writers)},
+          {"readers", names(composition, topic.readers)}};
+}
+
+ordered_json report(const ResolvedComposition& composition) {
+  ordered_json object;
+  object["result"] = !composition.usable() ? "errors" : composition.findings.empty() ? "good" : "warnings";
+  object["composition"] = composition.source.name;
+  object["file"] = composition.source.file;
+  for (const char* list : {"components", "topics", "pairs", "findings"}) object[list] = ordered_json::array();
+  for (const auto& component : composition.components)
+    object["components"].push_back(
+        {{"name", component.name}, {"type", component.manifest.type}, {"container", component.container}});
+  for (const auto& [name, topic] : composition.topics) object["topics"].push_back(topic_json(composition, topic));
+  for (const auto& pair : composition.pairs)
+    object["pairs"].push_back({{"topic", pair.topic},     {"type", pair.type},       {"writer", pair.writer},
+                               {"reader", pair.reader},   {"profile", pair.profile}, {"verdict", pair.verdict}});
+  for (const auto& finding : composition.findings)
+    object["findings"].push_back({{"severity", finding.severity == Severity::error ? "error" : "warning"},
+                                  {"file", finding.location.file},
+                                  {"line", finding.location.line},
+                                  {"column", finding.location.column},
+                                  {"message", finding.message}});
+  return object;
+}
+
+const ResolvedTopic& find_topic(const ResolvedComposition& composition, const std::string& name) {
+  const auto found = composition.topics.find(name);
+  if (found != composition.topics.end()) return found->second;
+  std::vector<std::string> known;
+  for (const auto& [topic, info] : composition.topics) known.push_back(topic);
+  throw ConfigError({"--explain " + name, 0, 0},
+                    composition.source.name + " has no such topic" + config::did_you_mean(name, known) +
+                        (nearest(name, known) ? " it has: " : "; it has: ") + config::joined(known));
+}
+
+void print_topic(const ResolvedComposition& composition, const ResolvedTopic& topic) {
+  std::cout << topic.name << "  " << topic.type << '\n';
+  print_table(std::cout,
+              {{"written by", config::joined(names(composition, topic.writers))},
+               {"read by", config::joined(names(composition, topic.readers))},
+               {"profile", topic.qos.profile.name}},
+              "  ");
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& value : topic.qos.values) rows.push_back({value.name, value.value, value.origin});
+  print_table(std::cout, rows, "    ");
+}
+
+void print_matrix(const ResolvedComposition& composition) {
+  std::vector<std::vector<std::string>> rows = {{"topic", "type", "writer", "reader", "profile", "verdict"}};
+  for (const auto& pair : composition.pairs)
+    rows.push_back({pair.topic, pair.type, pair.writer, pair.reader, pair.profile, pair.verdict});
+  print_table(std::cout, rows);
+}
+
+}  // namespace
+
+int check(const CheckRequest& request) {
+  ComponentRegistry registry(ComponentRegistry::default_folders());
+  const ResolvedComposition composition = prepare(request, registry);
+  const ResolvedTopic* topic = request.explain.empty() ? nullptr : &find_topic(composition, request.explain);
+  print_findings(composition);
+  if (request.json) {
+    std::cout << (topic ? topic_json(composition, *topic) : report(composition)).dump() << std::endl;
+  } else if (topic) {
+    print_topic(composition, *topic);
+  } else {
+    print_matrix(composition);
+    std::cout << composition.source.name << ": " << counted(composition.components.size(), "component") << ", "
+              << counted(composition.topics.size(), "topic") << ", " << counted(composition.pairs.size(), "pair") << ", "
+              << counted(count(composition, Severity::error), "error") << ", "
+              << counted(count(composition, Severity::warning), "warning") << '\n';
+  }
+  if (!composition.usable()) return exit_unusable;
+  return composition.findings.empty() ? exit_good : exit_found;
+}
+
+}  // namespace kervan::cli

@@ -1,0 +1,163 @@
+// kervan describe: what the component types say of themselves.
+#include <cmath>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "deploy/cli/catalogue.hpp"
+#include "deploy/cli/table.hpp"
+#include "deploy/cli/verbs.hpp"
+#include "deploy/composition/qos_rules.hpp"
+
+namespace kervan::cli {
+namespace {
+
+using composition::duration_text;
+using nlohmann::ordered_json;
+
+std::string unit_of(const ParameterInfo& info) {
+  if (info.kind == ParameterKind::duration) return "s";
+  if (info.kind == ParameterKind::pose) return "m, m, rad";
+  if (info.kind == ParameterKind::points) return "m";
+  return info.unit;
+}
+
+std::string allowed(const ParameterInfo& info) {
+  if (!info.choices.empty()) return config::joined(info.choices);
+  const bool low = std::isfinite(info.min), high = std::isfinite(info.max);
+  if (!low && !high) return "";
+  if (!high) return "at least " + to_text(Value(info.min));
+  if (!low) return "at most " + to_text(Value(info.max));
+  return to_text(Value(info.min)) + " .. " + to_text(Value(info.max));
+}
+
+std::string default_of(const ParameterInfo& info) { return info.required ? "required" : to_text(info.default_value); }
+
+void add_parameters(const std::vector<ParameterInfo>& parameters, const std::string& prefix,
+                    std::vector<std::vector<std::string>>& rows) {
+  for (const ParameterInfo& info : parameters) {
+    rows.push_back({prefix + info.name, to_text(info.kind), unit_of(info), default_of(info), allowed(info),
+                    info.help + (info.live ? " (may change while running)" : "")});
+    add_parameters(info.members, prefix + info.name + ".*.", rows);
+  }
+}
+
+std::string requirements(const PortInfo& port) {
+  std::string text = port.qos.profile();
+  if (port.qos.max_age() != forever) text += ", at most " + duration_text(port.qos.max_age()) + " old";
+  if (port.qos.deadline() != forever) text += ", deadline " + duration_text(port.qos.deadline());
+  if (port.qos.is_optional()) text += ", optional";
+  return text;
+}
+
+const char* to_text(PortDirection direction) { return direction == PortDirection::input ? "input" : "output"; }
+
+void print(const Manifest& manifest) {
+  std::cout << manifest.type << "  " << manifest.help << '\n';
+  std::vector<std::vector<std::string>> rows = {{"parameter", "kind", "unit", "default", "allowed", ""}};
+  add_parameters(manifest.parameters, "", rows);
+  if (rows.size() > 1) {
+    std::cout << '\n';
+    print_table(std::cout, rows, "  ");
+  }
+  rows = {{"port", "", "type", "quality of service", ""}};
+  for (const PortInfo& port : manifest.ports)
+    rows.push_back({port.name, to_text(port.direction), port.type, requirements(port), port.help});
+  if (rows.size() > 1) {
+    std::cout << '\n';
+    print_table(std::cout, rows, "  ");
+  }
+}
+
+ordered_json json_of(const Value& value) {
+  struct Convert {
+    ordered_json operator()(std::monostate) const { return nullptr; }
+    ordered_json operator()(bool v) const { return v; }
+    ordered_json operator()(std::int64_t v) const { return v; }
+    ordered_json operator()(double v) const { return v; }
+    ordered_json operator()(const std::string& v) const { return v; }
+    ordered_json operator()(const ValueList& list) const {
+      ordered_json array = ordered_json::array();
+      for (const Value& item : list) array.push_back(json_of(item));
+      return array;
+    }
+    ordered_json operator()(const ValueMap& map) const {
+      ordered_json object = ordered_json::object();
+      for (const auto& [key, item] : map) object[key] = json_of(item);
+      return object;
+    }
+  };
+  return std::visit(Convert{}, static_cast<const Value::variant&>(value));
+}
+
+ordered_json json_of(const std::vector<ParameterInfo>& parameters) {
+  ordered_json list = ordered_json::array();
+  for (const ParameterInfo& info : parameters) {
+    ordered_json object = {{"name", info.name},     {"kind", to_text(info.kind)}, {"unit", unit_of(info)},
+                           {"help", info.help},     {"required", info.required},  {"live", info.live},
+                           {"default", json_of(info.default_value)}};
+    if (std::isfinite(info.min)) object["min"] = info.min;
+    if (std::isfinite(info.max)) object["max"] = info.max;
+    if (!info.choices.empty()) object["choices"] = info.choices;
+    if (!info.members.empty()) object["members"] = json_of(info.members);
+    list.push_back(std::move(object));
+  }
+  return list;
+}
+
+ordered_json json_of(const Manifest& manifest) {
+  ordered_json object = {{"type", manifest.type}, {"help", manifest.help}, {"parameters", json_of(manifest.parameters)}};
+  object["ports"] = ordered_json::array();
+  for (const PortInfo& port : manifest.ports) {
+    ordered_json info = {{"name", port.name}, {"direction", to_text(port.direction)}, {"type", port.type},
+                         {"keyed", port.keyed}, {"profile", port.qos.profile()},      {"optional", port.qos.is_optional()},
+                         {"help", port.help}};
+    if (port.qos.max_age() != forever) info["max_age_s"] = seconds(port.qos.max_age());
+    if (port.qos.deadline() != forever) info["deadline_s"] = seconds(port.qos.deadline());
+    object["ports"].push_back(std::move(info));
+  }
+  object["timers"] = ordered_json::array();
+  for (const TimerInfo& timer : manifest.timers) object["timers"].push_back({{"period_s", seconds(timer.period)}});
+  object["own_thread"] = manifest.own_thread;
+  return object;
+}
+
+/// One module that cannot be loaded must not hide the others: it is listed with the reason.
+int list_all(ComponentRegistry& registry, bool json) {
+  int code = exit_good;
+  std::vector<std::vector<std::string>> rows;
+  ordered_json components = ordered_json::array();
+  for (const std::string& name : registry.names()) {
+    try {
+      const std::string help = registry.find(name)->help;
+      rows.push_back({name, help});
+      components.push_back({{"type", name}, {"help", help}});
+    } catch (const std::exception& error) {
+      code = exit_found;
+      rows.push_back({name, std::string("cannot be loaded: ") + error.what()});
+      components.push_back({{"type", name}, {"error", error.what()}});
+    }
+  }
+  if (json) std::cout << ordered_json{{"components", components}}.dump() << std::endl;
+  else print_table(std::cout, rows);
+  if (rows.empty()) std::cerr << "no components found; KERVAN_COMPONENT_PATH names the folders to look in\n";
+  return code;
+}
+
+}  // namespace
+
+int describe(const DescribeRequest& request) {
+  ComponentRegistry registry(ComponentRegistry::default_folders());
+  if (request.component.empty()) return list_all(registry, request.json);
+  const auto names = registry.names();
+  if (std::find(names.begin(), names.end(), request.component) == names.end())
+    throw ConfigError({}, "there is no component type '" + request.component + "'" +
+                              config::did_you_mean(request.component, names) +
+                              (nearest(request.component, names) ? " there are: " : "; there are: ") + config::joined(names));
+  InstalledComponents components(registry);
+  const Manifest manifest = components.manifest(request.component, {});
+  if (request.json) std::cout << json_of(manifest).dump() << std::endl;
+  else print(manifest);
+  return exit_good;
+}
+
+}  // namespace kervan::cli

@@ -1,0 +1,26 @@
+#include "deploy/cli/prepare.hpp"
+
+#include <iostream>
+
+#include "deploy/cli/catalogue.hpp"
+#include "deploy/cli/resources.hpp"
+#include "deploy/composition/load.hpp"
+#include "framework/runtime/status.hpp"
+
+namespace kervan::cli {
+
+composition::ResolvedComposition prepare(const CompositionRequest& request, ComponentRegistry& registry) {
+  const Resources resources = find_resources();
+  const auto file = composition::find_composition(request.composition, resources.compositions);
+  InstalledComponents components(registry);
+  const composition::ResolveOptions options{resources.files, {runtime::kStatusTopic, "/rosout"}};
+  return composition::resolve(composition::load(file, {request.arguments, request.place_all}), components, options);
+}
+
+void print_findings(const composition::ResolvedComposition& composition) {
+  for (const auto& finding : composition.findings)
+    std::cerr << to_text(finding.location) << ": "
+              << (finding.severity == composition::Severity::warning ? "warning: " : "") << finding.message << '\n';
+}
+
+}  // namespace kervan::cli

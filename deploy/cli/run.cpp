@@ -1,0 +1,184 @@
+// kervan run: check everything, then run, then say how it went and keep it in runs/<name>-<time>/.
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "deploy/cli/prepare.hpp"
+#include "deploy/cli/progress.hpp"
+#include "deploy/cli/run_composition.hpp"
+#include "deploy/cli/verbs.hpp"
+
+namespace kervan::cli {
+namespace {
+
+using composition::ResolvedComposition;
+using nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+std::atomic<bool> stop_wanted = false;
+std::atomic<int> signal_seen = 0;
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free, "a signal handler sets them");
+
+/// The first Ctrl-C ends the run in good order; a second one ends the program.
+extern "C" void on_signal(int signal) {
+  signal_seen = signal;
+  stop_wanted = true;
+  std::signal(signal, SIG_DFL);
+}
+
+Duration time_limit(const RunRequest& request) {
+  if (request.time_limit.empty()) return forever;
+  const Duration limit = config::scalar(request.time_limit, "", "--for " + request.time_limit).as_duration();
+  if (limit <= Duration::zero()) throw ConfigError({"--for " + request.time_limit, 0, 0}, "the time must be longer than 0 s");
+  return limit;
+}
+
+/// The mission's own time-out, which bounds the run.
+Duration mission_timeout(const ResolvedComposition& composition) {
+  for (const auto& component : composition.components) {
+    if (component.manifest.type != "observe/mission") continue;
+    const ParameterInfo* info = component.manifest.parameter("timeout");
+    const auto given = component.parameters.find("timeout");
+    const Value timeout = given != component.parameters.end() ? given->second : info ? info->default_value : Value();
+    if (const auto* s = std::get_if<double>(&timeout)) return from_seconds(*s);
+  }
+  return forever;
+}
+
+void require_runnable(const ResolvedComposition& composition) {
+  const auto& source = composition.source;
+  if (source.containers.size() > 1)
+    throw ConfigError(source.containers[1].location,
+                      "this version runs a composition in one container, and this one has " +
+                          std::to_string(source.containers.size()) + "; add --place all to run them as one");
+  if (source.clock.mode == composition::ClockMode::sim)
+    throw ConfigError(source.clock.location, "this version cannot run under clock sim; write lockstep or wall");
+}
+
+/// runs/lab-20250131-142501; a number follows if two runs begin in the same second.
+fs::path make_run_folder(const std::string& runs, const std::string& name) {
+  std::error_code error;
+  fs::create_directories(runs, error);
+  if (error) throw ConfigError({"--runs " + runs, 0, 0}, "cannot make the folder: " + error.message());
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char time[32];
+  std::strftime(time, sizeof time, "%Y%m%d-%H%M%S", &local);
+  const std::string stem = name + "-" + time;
+  for (int attempt = 1; attempt < 1000; ++attempt) {
+    const fs::path folder = fs::path(runs) / (attempt == 1 ? stem : stem + "-" + std::to_string(attempt));
+    if (fs::create_directory(folder, error)) return folder;
+    if (error) break;
+  }
+  throw ConfigError({"--runs " + runs, 0, 0}, "cannot make a folder in it: " + error.message());
+}
+
+const char* to_text(RunResult result) {
+  switch (result) {
+    case RunResult::success: return "success";
+    case RunResult::failed: return "failed";
+    case RunResult::aborted: return "aborted";
+  }
+  return "";
+}
+
+/// Figures are for people and scripts: tenths of a millimetre and of a millisecond say all there is to say.
+double rounded(double value) { return std::round(value * 1e4) / 1e4; }
+
+ordered_json summary(const RunOutcome& outcome) {
+  ordered_json robots = ordered_json::object();
+  for (const auto& [name, robot] : outcome.robots) {
+    ordered_json clearance = nullptr;
+    if (robot.min_clearance_m) clearance = rounded(*robot.min_clearance_m);
+    robots[name] = {{"reached", robot.reached},         {"error_m", rounded(robot.error_m)},
+                    {"time_s", rounded(robot.time_s)},  {"path_m", rounded(robot.path_m)},
+                    {"contacts", robot.contacts},       {"min_clearance_m", clearance}};
+  }
+  ordered_json object = {{"result", to_text(outcome.result)},
+                         {"robots", robots},
+                         {"trace_hash", outcome.trace_hash},
+                         {"simulated_s", rounded(outcome.simulated_s)},
+                         {"wall_s", rounded(outcome.wall_s)}};
+  if (outcome.result != RunResult::success) object["reason"] = outcome.reason;
+  if (signal_seen != 0) object["interrupted"] = true;
+  return object;
+}
+
+void write_summary(const fs::path& folder, const ordered_json& object) {
+  std::ofstream file(folder / "summary.json");
+  file << object.dump(2) << '\n';
+  if (!file.flush()) std::cerr << (folder / "summary.json").string() << ": cannot be written\n";
+}
+
+std::string decimal(double value, int digits) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", digits, value);
+  return text;
+}
+
+void print_result(std::ostream& out, const RunOutcome& outcome, const fs::path& folder) {
+  out << to_text(outcome.result);
+  if (!outcome.reason.empty()) out << ": " << outcome.reason;
+  out << '\n';
+  for (const auto& [name, robot] : outcome.robots) {
+    out << "  " << name << (robot.reached ? "  reached its goal in " : "  did not reach its goal in ") << decimal(robot.time_s, 1)
+        << " s, error " << decimal(robot.error_m, 3) << " m, path " << decimal(robot.path_m, 2) << " m, " << robot.contacts
+        << (robot.contacts == 1 ? " contact" : " contacts");
+    if (robot.min_clearance_m) out << ", least clearance " << decimal(*robot.min_clearance_m, 3) << " m";
+    out << '\n';
+  }
+  out << "  " << progress_text(from_seconds(outcome.simulated_s), forever, outcome.wall_s) << " real time";
+  if (!outcome.trace_hash.empty()) out << ", trace " << outcome.trace_hash;
+  out << "\n  " << folder.string() << "/\n";
+}
+
+int exit_code(const RunOutcome& outcome) {
+  if (signal_seen == SIGINT) return exit_interrupt;
+  if (signal_seen != 0) return exit_terminated;
+  return outcome.result == RunResult::success ? exit_good : exit_found;
+}
+
+}  // namespace
+
+int run(const RunRequest& request) {
+  const Duration limit = time_limit(request);
+  ComponentRegistry registry(ComponentRegistry::default_folders());
+  const ResolvedComposition composition = prepare(request, registry);
+  print_findings(composition);
+  if (!composition.usable()) return exit_unusable;
+  require_runnable(composition);
+
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+  const bool made_runs = !fs::exists(request.runs_folder);
+  RunOptions options;
+  options.run_folder = make_run_folder(request.runs_folder, composition.source.name);
+  options.time_limit = limit;
+  options.threads = static_cast<unsigned>(request.threads);
+  options.stop = &stop_wanted;
+
+  RunOutcome outcome;
+  try {
+    Progress progress(std::min(limit, mission_timeout(composition)), isatty(STDERR_FILENO) == 1);
+    outcome = run_composition(composition, registry, options, [&](Duration simulated) { progress.show(simulated); });
+  } catch (const ConfigError&) {
+    // Refused after all, before anything ran: leave nothing behind.
+    std::error_code ignored;
+    fs::remove_all(options.run_folder, ignored);
+    if (made_runs) fs::remove(request.runs_folder, ignored);
+    throw;
+  }
+  const ordered_json object = summary(outcome);
+  write_summary(options.run_folder, object);
+  print_result(request.json ? std::cerr : std::cout, outcome, options.run_folder);
+  if (request.json) std::cout << object.dump() << std::endl;
+  return exit_code(outcome);
+}
+
+}  // namespace kervan::cli

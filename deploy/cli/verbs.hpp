@@ -1,0 +1,45 @@
+/// What the command line asks for, one function a verb. Each returns the program's exit code; main.cpp parses the
+/// arguments and turns errors into one line and a code.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace kervan::cli {
+
+/// The exit codes of every verb.
+enum ExitCode : int {
+  exit_good = 0,
+  exit_found = 1,     ///< the check found something, the mission failed
+  exit_unusable = 2,  ///< wrong usage or configuration; nothing was done
+  exit_interrupt = 130,
+  exit_terminated = 143,
+};
+
+struct CompositionRequest {
+  std::string composition;             ///< a name or a file
+  std::vector<std::string> arguments;  ///< "name=value"
+  bool place_all = false;
+  bool json = false;
+};
+
+struct RunRequest : CompositionRequest {
+  std::string time_limit;  ///< "60s"; empty for none
+  int threads = 0;         ///< 0: as the composition says
+  std::string runs_folder = "runs";
+};
+
+struct CheckRequest : CompositionRequest {
+  std::string explain;  ///< a topic; empty for the whole matrix
+};
+
+struct DescribeRequest {
+  std::string component;  ///< empty for the list of all
+  bool json = false;
+};
+
+int run(const RunRequest& request);
+int check(const CheckRequest& request);
+int describe(const DescribeRequest& request);
+
+}  // namespace kervan::cli

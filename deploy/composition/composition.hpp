@@ -1,0 +1,98 @@
+/// A composition as its file says it, with arguments filled in and templates expanded, but not yet compared with what the
+/// components say of themselves; resolve.hpp does that.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/component/parameters.hpp"
+#include "framework/component/time.hpp"
+#include "framework/config/node.hpp"
+
+namespace kervan::composition {
+
+enum class ClockMode { wall, sim, lockstep };
+std::string_view to_text(ClockMode mode);
+
+struct Clock {
+  ClockMode mode = ClockMode::wall;
+  Duration step = std::chrono::milliseconds(10);  ///< of the simulation
+  double pace = 1.0;                              ///< simulated time over wall time; 0 is as fast as possible
+  Location location = {};                         ///< of its mode
+};
+
+struct Host {
+  std::string name;
+  std::string interface;  ///< of the network, empty if any
+  std::string address;    ///< where the others find it, empty if on the same machine
+};
+
+struct Domain {
+  int id = 0;
+  std::vector<Host> hosts;
+};
+
+/// One component instance. What its type must confirm (parameters, ports) is kept as written.
+struct ComponentEntry {
+  std::string name;        ///< "world", "r1/control"
+  std::string scope;       ///< the template instance it belongs to ("r1"), empty for the file's own components
+  config::Node type;       ///< "control/potential_field"
+  config::Node params;     ///< a map
+  config::Node remap;      ///< a map: port -> topic or component/port
+  std::string log_level;   ///< trace, debug, info, warn, error or off
+  Location location;       ///< where its name stands
+};
+
+struct ProfileEntry {
+  std::string name;
+  config::Node settings;  ///< `extends` and the values
+};
+
+struct TopicEntry {
+  std::string pattern;    ///< absolute, may hold wildcards
+  config::Node settings;  ///< `qos`, `external` and the values
+};
+
+enum class RestartPolicy { never, on_failure, always };
+
+struct Restart {
+  RestartPolicy policy = RestartPolicy::never;
+  int max = 5;                                     ///< more restarts than this within `window` end the attempts
+  Duration window = std::chrono::seconds(30);
+};
+
+struct Container {
+  std::string name;
+  std::string host;                     ///< empty: this one
+  std::vector<std::string> components;  ///< full names, in the composition's order
+  int threads = 1;
+  Restart restart;
+  Location location;
+};
+
+/// An argument, or a parameter of a template: declared like a component's parameter.
+struct Argument {
+  ParameterInfo info;
+  std::optional<config::Node> value;  ///< given, or the default; none for a declaration that must be given
+  Location location;
+};
+
+struct Composition {
+  std::string name;
+  std::string help;
+  std::string file;              ///< as shown in messages
+  std::filesystem::path folder;  ///< relative paths are looked up here first
+  std::vector<Argument> arguments;
+  Clock clock;
+  Domain domain;
+  std::vector<ProfileEntry> profiles;
+  std::vector<TopicEntry> topics;
+  std::vector<ComponentEntry> components;  ///< in the file's order, a template's where its instance stands
+  std::vector<Container> containers;       ///< every component is in exactly one
+
+  const ComponentEntry* component(std::string_view full_name) const;
+};
+
+}  // namespace kervan::composition

@@ -1,0 +1,301 @@
+#include "deploy/composition/load.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "deploy/composition/arguments.hpp"
+#include "deploy/composition/expand.hpp"
+#include "deploy/composition/glob.hpp"
+#include "deploy/composition/qos_rules.hpp"
+
+namespace kervan::composition {
+namespace {
+
+using config::Node;
+namespace fs = std::filesystem;
+
+Clock read_clock(const Node& node) {
+  node.only_keys({"mode", "step", "pace"});
+  Clock clock;
+  const std::string mode = node.required("mode").as_choice({"wall", "sim", "lockstep"});
+  clock.location = node.required("mode").location;
+  clock.mode = mode == "wall" ? ClockMode::wall : mode == "sim" ? ClockMode::sim : ClockMode::lockstep;
+  if (const Node* step = node.optional("step")) {
+    if (clock.mode == ClockMode::wall) step->fail_at_key("'step' has no meaning under clock wall");
+    clock.step = step->as_duration();
+    if (clock.step <= Duration::zero()) step->fail(step->shown() + " is out of range; allowed: more than 0 s");
+  }
+  if (clock.mode == ClockMode::lockstep) clock.pace = 0.0;
+  if (const Node* pace = node.optional("pace")) {
+    if (clock.mode != ClockMode::sim) pace->fail_at_key("'pace' has a meaning under clock sim only");
+    const std::string text = pace->as_text();
+    if (text == "real-time") clock.pace = 1.0;
+    else if (text == "max") clock.pace = 0.0;
+    else if (text.ends_with('x')) {
+      clock.pace = config::scalar(text.substr(0, text.size() - 1), "pace", to_text(pace->location)).as_number();
+      if (clock.pace <= 0.0) pace->fail(pace->shown() + " is out of range; allowed: more than 0x");
+    } else {
+      pace->fail(pace->shown() + " is not a pace; write real-time, max or a factor such as 4x");
+    }
+  }
+  return clock;
+}
+
+Domain read_domain(const Node& node) {
+  node.only_keys({"id", "hosts"});
+  Domain domain;
+  if (const Node* id = node.optional("id")) {
+    const std::int64_t value = id->as_integer();
+    // Above 232 the UDP ports that DDS derives from the id no longer exist.
+    if (value < 0 || value > 232) id->fail(id->shown() + " is out of range; allowed: 0 .. 232");
+    domain.id = static_cast<int>(value);
+  }
+  if (const Node* hosts = node.optional("hosts")) {
+    for (const Node& host : hosts->map()) {
+      require_name(host, "host");
+      host.only_keys({"interface", "address"});
+      const Node* interface = host.optional("interface");
+      const Node* address = host.optional("address");
+      domain.hosts.push_back({host.name, interface ? interface->as_text() : "", address ? address->as_text() : ""});
+    }
+  }
+  return domain;
+}
+
+Restart read_restart(const Node& node) {
+  node.only_keys({"policy", "max", "window"});
+  Restart restart;
+  const std::string policy = node.required("policy").as_choice({"never", "on-failure", "always"});
+  restart.policy = policy == "never"        ? RestartPolicy::never
+                   : policy == "on-failure" ? RestartPolicy::on_failure
+                                            : RestartPolicy::always;
+  if (const Node* max = node.optional("max")) {
+    const std::int64_t value = max->as_integer();
+    if (value < 1 || value > 1000) max->fail(max->shown() + " is out of range; allowed: 1 .. 1000");
+    restart.max = static_cast<int>(value);
+  }
+  if (const Node* window = node.optional("window")) restart.window = window->as_duration();
+  return restart;
+}
+
+/// Places components into containers and remembers which line placed each, to name both when one is placed twice.
+class Placement {
+ public:
+  explicit Placement(const std::vector<ComponentEntry>& components) : components_(components), placed_(components.size()) {}
+
+  void place(const Node& pattern, const std::string& container) {
+    bool found = false;
+    for (std::size_t i = 0; i < components_.size(); ++i) {
+      if (!covers(pattern.as_text(), components_[i].name)) continue;
+      found = true;
+      if (placed_[i].container == container) continue;
+      if (!placed_[i].container.empty())
+        throw ConfigError(pattern.location, "the component '" + components_[i].name + "' is already in the container '" +
+                                                placed_[i].container + "' (" + to_text(placed_[i].location) +
+                                                "); it can be in one only");
+      placed_[i] = {container, pattern.location};
+    }
+    if (!found)
+      throw ConfigError(pattern.location, "there is no component '" + pattern.text + "'" +
+                                              config::did_you_mean(pattern.text, names()));
+  }
+
+  /// Components that no line placed: the mission, which is not written under `components:`, goes where the first container
+  /// is; for any other it is an error.
+  void finish(std::vector<Container>& containers, const std::string& implied) {
+    for (std::size_t i = 0; i < components_.size(); ++i) {
+      if (!placed_[i].container.empty()) continue;
+      if (components_[i].name != implied)
+        throw ConfigError(components_[i].location,
+                          "the component '" + components_[i].name + "' is in no container; add it to one under 'containers'");
+      placed_[i].container = containers.front().name;
+    }
+    for (Container& container : containers)
+      for (std::size_t i = 0; i < components_.size(); ++i)
+        if (placed_[i].container == container.name) container.components.push_back(components_[i].name);
+  }
+
+ private:
+  struct Placed {
+    std::string container;
+    Location location;
+  };
+
+  std::vector<std::string> names() const {
+    std::set<std::string> names;
+    for (const ComponentEntry& component : components_) {
+      names.insert(component.name);
+      if (!component.scope.empty()) names.insert(component.scope);
+    }
+    return {names.begin(), names.end()};
+  }
+
+  const std::vector<ComponentEntry>& components_;
+  std::vector<Placed> placed_;
+};
+
+std::vector<Container> read_containers(const Node& node, const Composition& composition, const std::string& implied) {
+  std::vector<Container> containers;
+  Placement placement(composition.components);
+  std::vector<std::string> hosts;
+  for (const Host& host : composition.domain.hosts) hosts.push_back(host.name);
+  if (node.map().empty()) node.fail("there must be at least one container; leave 'containers' out to have one for all");
+  for (const Node& given : node.map()) {
+    require_name(given, "container");
+    given.only_keys({"host", "components", "threads", "restart"});
+    Container container;
+    container.name = given.name;
+    container.location = given.key_location;
+    if (const Node* host = given.optional("host")) {
+      container.host = host->as_text();
+      if (std::find(hosts.begin(), hosts.end(), container.host) == hosts.end())
+        host->fail("there is no host '" + container.host + "'" + config::did_you_mean(container.host, hosts) +
+                   (nearest(container.host, hosts) ? " under domain.hosts: " : "; under domain.hosts: ") + config::joined(hosts));
+    }
+    if (const Node* threads = given.optional("threads")) {
+      const std::int64_t value = threads->as_integer();
+      if (value < 1 || value > 64) threads->fail(threads->shown() + " is out of range; allowed: 1 .. 64");
+      container.threads = static_cast<int>(value);
+    }
+    if (const Node* restart = given.optional("restart")) container.restart = read_restart(*restart);
+    for (const Node& pattern : given.required("components").list()) placement.place(pattern, given.name);
+    containers.push_back(std::move(container));
+  }
+  placement.finish(containers, implied);
+  return containers;
+}
+
+/// One container for everything. Of the containers it replaces only the number of threads is kept, the largest.
+Container one_container(const Composition& composition) {
+  Container all;
+  all.name = "all";
+  for (const Container& container : composition.containers) all.threads = std::max(all.threads, container.threads);
+  for (const ComponentEntry& component : composition.components) all.components.push_back(component.name);
+  return all;
+}
+
+ComponentEntry mission_component(const Node& mission, const std::string& log_level) {
+  mission.map();
+  ComponentEntry entry;
+  entry.name = "mission";
+  entry.type = config::scalar("observe/mission", "mission", mission.location.file);
+  entry.type.location = entry.type.key_location = mission.key_location;
+  entry.params = mission;
+  entry.remap.kind = config::Kind::map;
+  entry.log_level = log_level;
+  entry.location = mission.key_location;
+  return entry;
+}
+
+std::vector<TopicEntry> read_topics(const Node& node) {
+  std::vector<TopicEntry> topics;
+  for (const Node& topic : node.map()) {
+    if (!topic.name.starts_with('/'))
+      topic.fail_at_key("'" + topic.name + "' is not a topic; topics are written in full here, from the leading /");
+    check_topic_settings(topic);
+    topics.push_back({topic.name, topic});
+  }
+  return topics;
+}
+
+void check_version(const Node& root) {
+  const Node& version = root.required("kervan");
+  if (version.as_integer() != 1) version.fail("version " + version.text + " of the format is not known; this program reads 1");
+}
+
+Composition load_node(const Node& root, const std::string& shown_as, const fs::path& folder, const LoadOptions& options) {
+  if (!root.is_map()) root.fail("a composition is a map that begins with 'kervan: 1'");
+  check_version(root);
+  root.only_keys({"kervan", "name", "help", "args", "clock", "domain", "log", "qos", "topics", "templates", "components",
+                  "containers", "mission"});
+  Composition composition;
+  composition.file = shown_as;
+  composition.folder = folder;
+  if (const Node* args = root.optional("args")) composition.arguments = declare_arguments(*args);
+  give_from_command_line(composition.arguments, options.arguments);
+
+  const auto filled = [&](const char* key) -> std::optional<Node> {
+    const Node* node = root.optional(key);
+    return node ? std::optional(substitute(*node, composition.arguments)) : std::nullopt;
+  };
+  const Node& name = root.required("name");
+  composition.name = name.as_text();
+  if (composition.name.empty() || composition.name.find_first_of("/ ${}") != std::string::npos)
+    name.fail(name.shown() + " is not a name; it also names the folder of a run, so write it without spaces and slashes");
+  if (const auto help = filled("help")) composition.help = help->as_text();
+  if (const auto clock = filled("clock")) composition.clock = read_clock(*clock);
+  if (const auto domain = filled("domain")) composition.domain = read_domain(*domain);
+  const auto log = filled("log");
+  const std::string log_level = log ? log_level_of(*log) : "info";
+  if (const auto qos = filled("qos"))
+    for (const Node& profile : qos->map()) composition.profiles.push_back({profile.name, profile});
+  Profiles check_profiles(composition.profiles);
+  if (const auto topics = filled("topics")) composition.topics = read_topics(*topics);
+
+  const Node& components = root.required("components");
+  if (components.map().empty()) components.fail("there must be at least one component");
+  composition.components = expand_components(components, root.optional("templates"), composition.arguments, log_level);
+  const auto mission = filled("mission");
+  if (mission) {
+    if (const ComponentEntry* same = composition.component("mission"))
+      mission->fail_at_key("'mission' is a component already (" + to_text(same->location) + "); keep one of the two");
+    composition.components.push_back(mission_component(*mission, log_level));
+  }
+  if (const auto containers = filled("containers"))
+    composition.containers = read_containers(*containers, composition, mission ? "mission" : "");
+  if (composition.containers.empty() || options.place_all) composition.containers = {one_container(composition)};
+  return composition;
+}
+
+}  // namespace
+
+std::string_view to_text(ClockMode mode) {
+  switch (mode) {
+    case ClockMode::wall: return "wall";
+    case ClockMode::sim: return "sim";
+    case ClockMode::lockstep: return "lockstep";
+  }
+  return "";
+}
+
+const ComponentEntry* Composition::component(std::string_view full_name) const {
+  for (const ComponentEntry& entry : components)
+    if (entry.name == full_name) return &entry;
+  return nullptr;
+}
+
+Composition load(const fs::path& file, const LoadOptions& options) {
+  const std::string shown = shown_path(file);
+  return load_node(config::load(file.string(), shown), shown, fs::absolute(file).parent_path(), options);
+}
+
+Composition load_text(const std::string& text, const std::string& shown_as, const fs::path& folder, const LoadOptions& options) {
+  return load_node(config::parse(text, shown_as), shown_as, folder, options);
+}
+
+fs::path find_composition(const std::string& name_or_file, const std::vector<fs::path>& folders) {
+  if (name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml") || name_or_file.find('/') != std::string::npos) {
+    if (!fs::is_regular_file(name_or_file)) throw ConfigError({name_or_file, 0, 0}, "there is no such file");
+    return name_or_file;
+  }
+  std::set<std::string> known;
+  for (const fs::path& folder : folders) {
+    const fs::path file = folder / (name_or_file + ".yaml");
+    if (fs::is_regular_file(file)) return file;
+    if (!fs::is_directory(folder)) continue;
+    for (const auto& entry : fs::directory_iterator(folder))
+      if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
+  }
+  const std::vector<std::string> names(known.begin(), known.end());
+  throw ConfigError({}, "there is no composition '" + name_or_file + "'" + config::did_you_mean(name_or_file, names) +
+                            (nearest(name_or_file, names) ? " there are: " : "; there are: ") + config::joined(names));
+}
+
+std::string shown_path(const fs::path& path) {
+  std::error_code error;
+  const fs::path relative = fs::proximate(path, error);
+  if (error || relative.empty() || *relative.begin() == "..") return path.lexically_normal().string();
+  return relative.string();
+}
+
+}  // namespace kervan::composition

@@ -1,0 +1,31 @@
+/// Reads a composition file and everything in it that can be judged without knowing the component types.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "deploy/composition/composition.hpp"
+
+namespace kervan::composition {
+
+struct LoadOptions {
+  std::vector<std::string> arguments;  ///< "controller=vff", as on the command line
+  bool place_all = false;              ///< one container for everything, whatever the file says
+};
+
+/// Throws ConfigError at the place of the first thing that cannot be used.
+Composition load(const std::filesystem::path& file, const LoadOptions& options = {});
+
+/// The same for a text; `shown_as` names it in messages, `folder` is where its relative paths begin.
+Composition load_text(const std::string& text, const std::string& shown_as, const std::filesystem::path& folder,
+                      const LoadOptions& options = {});
+
+/// The file of a composition: `name_or_file` itself if it ends in .yaml or holds a slash, else NAME.yaml in the first of
+/// `folders` that has it. Throws ConfigError with a suggestion and the list of what there is.
+std::filesystem::path find_composition(const std::string& name_or_file, const std::vector<std::filesystem::path>& folders);
+
+/// The path as a person would write it from here: relative if it lies below the working folder.
+std::string shown_path(const std::filesystem::path& path);
+
+}  // namespace kervan::composition

@@ -1,0 +1,143 @@
+#include "framework/component/component.hpp"
+
+#include <stdexcept>
+
+#include "framework/dds/type_support.hpp"
+#include "framework/runtime/container.hpp"
+#include "framework/runtime/instance.hpp"
+
+namespace kervan {
+
+namespace {
+
+/// What the component under construction is made with: its members ask for it before its constructor's body runs.
+thread_local const ComponentSetup* current_setup = nullptr;
+
+PortInfo port_info(std::string name, PortDirection direction, const TypeSupport& type, PortQos qos, std::string help) {
+  return {std::move(name), direction, type.name, type.layout_hash, type.keyed, qos, std::move(help)};
+}
+
+}  // namespace
+
+std::string_view to_text(ComponentState state) {
+  switch (state) {
+    case ComponentState::configured: return "configured";
+    case ComponentState::active: return "active";
+    case ComponentState::degraded: return "degraded";
+    case ComponentState::failed: return "failed";
+    case ComponentState::stopped: return "stopped";
+  }
+  return "unknown";
+}
+
+Component::Component() {
+  if (!current_setup) throw std::logic_error("a component is made by kervan::construct(), a container or a harness");
+  static const ValueMap no_parameters;
+  name_ = current_setup->name;
+  describing_ = current_setup->describing;
+  parameters_ = current_setup->parameters ? current_setup->parameters : &no_parameters;
+  run_folder_ = current_setup->run_folder;
+}
+
+Component::~Component() = default;
+
+void Component::check_parameters() const { validate(schema_, *parameters_, !describing_); }
+
+void Component::report_active() {
+  if (instance_ && state_ != ComponentState::failed) instance_->set_state(ComponentState::active, {});
+}
+
+void Component::report_degraded(std::string why) {
+  if (instance_ && state_ != ComponentState::failed) instance_->set_state(ComponentState::degraded, std::move(why));
+}
+
+void Component::finish(std::string why) {
+  if (instance_) instance_->container().request_finish(instance_->index(), std::move(why));
+}
+
+Time Component::now() const { return instance_ ? instance_->instant().time : Time{}; }
+
+spdlog::logger& Component::log() const {
+  if (!instance_) throw std::logic_error("log() is for handlers: a component has no logger while it is constructed");
+  return instance_->log();
+}
+
+InputBase::InputBase(Component* owner, std::string name, const TypeSupport& type, PortQos qos, Deliver deliver,
+                     std::string help)
+    : info_(port_info(std::move(name), PortDirection::input, type, qos, std::move(help))),
+      type_(type),
+      deliver_(std::move(deliver)) {
+  owner->inputs_.push_back(this);
+  owner->ports_.push_back(&info_);
+}
+
+dds::SampleBlock* InputBase::latest_block() const { return port_ ? port_->latest() : nullptr; }
+
+std::vector<dds::SampleBlock*> InputBase::take_blocks() {
+  return port_ ? port_->take() : std::vector<dds::SampleBlock*>();
+}
+
+std::vector<dds::SampleBlock*> InputBase::instance_blocks() const {
+  return port_ ? port_->instances() : std::vector<dds::SampleBlock*>();
+}
+
+std::string InputBase::missing() const { return port_ ? port_->missing() : info_.name + ": not connected yet"; }
+
+OutputBase::OutputBase(Component* owner, std::string name, const TypeSupport& type, PortQos qos, std::string help)
+    : info_(port_info(std::move(name), PortDirection::output, type, qos, std::move(help))), type_(type) {
+  owner->outputs_.push_back(this);
+  owner->ports_.push_back(&info_);
+}
+
+dds::SampleBlock* OutputBase::loan_block(bool cleared) {
+  if (!port_) throw std::logic_error("output " + info_.name + " can be used in handlers, not in the constructor");
+  return port_->loan(cleared);
+}
+
+void OutputBase::publish_block(dds::SampleBlock* block, bool dispose) { port_->publish(block, dispose); }
+
+Timer::Timer(Component* owner, Duration period, std::function<void(Time)> handler)
+    : period_(period), handler_(std::move(handler)) {
+  if (period <= Duration::zero()) throw ParameterError("period", "a timer's period must be longer than 0 s");
+  owner->timers_.push_back(this);
+}
+
+std::unique_ptr<Component> construct(const ComponentClass& type, const ComponentSetup& setup) {
+  struct Scope {
+    const ComponentSetup* outer;
+    explicit Scope(const ComponentSetup* setup) : outer(std::exchange(current_setup, setup)) {}
+    ~Scope() { current_setup = outer; }
+  };
+  const Scope scope(&setup);
+  return type.make();
+}
+
+Manifest describe(const ComponentClass& type, const ValueMap& parameters) {
+  ComponentSetup setup;
+  setup.name = type.type;
+  setup.parameters = &parameters;
+  setup.describing = true;
+  const std::unique_ptr<Component> component = construct(type, setup);
+  Manifest manifest;
+  manifest.type = type.type;
+  manifest.help = type.help;
+  manifest.parameters = component->schema_;
+  for (const PortInfo* port : component->ports_) manifest.ports.push_back(*port);
+  for (const Timer* timer : component->timers_) manifest.timers.push_back({timer->period()});
+  manifest.own_thread = component->own_thread_;
+  return manifest;
+}
+
+const PortInfo* Manifest::port(const std::string& name) const {
+  for (const PortInfo& port : ports)
+    if (port.name == name) return &port;
+  return nullptr;
+}
+
+const ParameterInfo* Manifest::parameter(const std::string& name) const {
+  for (const ParameterInfo& parameter : parameters)
+    if (parameter.name == name) return &parameter;
+  return nullptr;
+}
+
+}  // namespace kervan

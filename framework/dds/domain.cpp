@@ -1,0 +1,117 @@
+#include "framework/dds/domain.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsrt/log.h>
+
+#include <cstring>
+
+#include "framework/dds/sample_block.hpp"
+
+namespace kervan::dds {
+
+namespace {
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      default: result += c;
+    }
+  return result;
+}
+
+/// Collects what Cyclone logs while it exists: its return codes alone do not say why a domain cannot be made.
+class LogCapture {
+ public:
+  LogCapture() : lock_(mutex()) { dds_set_log_sink(&LogCapture::take, this); }
+  LogCapture(const LogCapture&) = delete;
+  LogCapture& operator=(const LogCapture&) = delete;
+  ~LogCapture() { dds_set_log_sink(nullptr, nullptr); }
+
+  std::string text() const { return text_.empty() ? "Cyclone DDS gave no reason" : text_; }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex one_at_a_time;  // the sink is global to the process
+    return one_at_a_time;
+  }
+  static void take(void* self, const dds_log_data_t* line) {
+    if (!(line->priority & (DDS_LC_ERROR | DDS_LC_FATAL | DDS_LC_WARNING))) return;
+    std::string message(line->message, line->size ? line->size : std::strlen(line->message));
+    while (!message.empty() && (message.back() == '\n' || message.back() == '\0')) message.pop_back();
+    auto& text = static_cast<LogCapture*>(self)->text_;
+    if (!text.empty()) text += "; ";
+    text += message;
+  }
+
+  std::lock_guard<std::mutex> lock_;
+  std::string text_;
+};
+
+}  // namespace
+
+std::string cyclone_configuration(const DomainConfig& config) {
+  std::string xml = "<General>";
+  if (!config.network) return xml + "<Transport>none</Transport></General>";
+  // The loopback interface carries multicast but does not say so. Index and lease: Cyclone's defaults let only nine
+  // processes share an interface without multicast, and take ten seconds to notice that a peer died.
+  xml += "<Interfaces><NetworkInterface name=\"" + escaped(config.interface) + "\"" +
+         (config.interface == "lo" ? " multicast=\"true\"" : "") + "/></Interfaces></General><Discovery>";
+  if (!config.tag.empty()) xml += "<Tag>" + escaped(config.tag) + "</Tag>";
+  xml += "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
+         "<LeaseDuration>2s</LeaseDuration>";
+  if (!config.peers.empty()) {
+    xml += "<Peers>";
+    for (const std::string& peer : config.peers) xml += "<Peer address=\"" + escaped(peer) + "\"/>";
+    xml += "</Peers>";
+  }
+  return xml + "</Discovery>";
+}
+
+Domain::Domain(const DomainConfig& config) {
+  LogCapture log;
+  const auto fail = [&](const char* what, int code) {
+    if (domain_ > 0) dds_delete(domain_);
+    throw DdsError(std::string("cannot ") + what + " (domain " + std::to_string(config.id) +
+                   (config.network ? ", interface " + config.interface : ", no network") +
+                   "): " + dds_strretcode(-code) + "; " + log.text());
+  };
+  domain_ = dds_create_domain(config.id, cyclone_configuration(config).c_str());
+  if (domain_ < 0) fail("create the DDS domain", domain_);
+  participant_ = dds_create_participant(config.id, nullptr, nullptr);
+  if (participant_ < 0) fail("create the DDS participant", participant_);
+}
+
+Domain::~Domain() { dds_delete(domain_); }
+
+Domain::Topic Domain::topic(const std::string& name, const TypeSupport& type) {
+  const std::lock_guard lock(mutex_);
+  if (const auto found = topics_.find(name); found != topics_.end()) {
+    if (found->second.type->layout_hash != type.layout_hash)
+      throw DdsError("topic " + name + " carries " + found->second.type->name + ", not " + type.name);
+    return found->second.topic;
+  }
+  const TypeSupport*& known = types_.try_emplace(type.name, &type).first->second;
+  if (known->layout_hash != type.layout_hash)
+    throw DdsError(std::string("two modules of this container were built with different layouts of ") + type.name +
+                   "; rebuild them against the same IDL package");
+
+  SampleType* sample_type = make_sample_type(*known);
+  ddsi_sertype* registered = sample_type;
+  const std::string wire_name = "rt" + name;
+  const dds_entity_t entity =
+      dds_create_topic_sertype(participant_, wire_name.c_str(), &registered, nullptr, nullptr, nullptr);
+  if (entity < 0) {
+    ddsi_sertype_unref(sample_type);
+    throw DdsError("cannot create topic " + name + ": " + dds_strretcode(-entity));
+  }
+  // Cyclone gives back the type registered first when an equal one is there already.
+  const Topic topic{entity, static_cast<const SampleType*>(registered)};
+  topics_.emplace(name, Known{topic, known});
+  return topic;
+}
+
+}  // namespace kervan::dds

@@ -1,0 +1,67 @@
+/// A DDS domain of this process, with one participant and a configuration made here.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "framework/dds/type_support.hpp"
+
+namespace kervan::dds {
+
+/// DDS refused something. what() carries Cyclone's own words.
+class DdsError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct DomainConfig {
+  std::uint32_t id = 0;
+  bool network = true;           ///< false: no sockets at all, the domain ends with this process
+  std::string interface = "lo";  ///< name of the network interface
+  std::string tag = {};            ///< domains with different tags do not see each other
+  std::vector<std::string> peers = {};  ///< addresses to look for when the network has no multicast
+};
+
+/// The configuration that Cyclone is given, as XML.
+std::string cyclone_configuration(const DomainConfig& config);
+
+struct SampleType;
+
+/// The first failure is fatal: after a failed domain a participant might come up on another interface, unasked.
+class Domain {
+ public:
+  /// Throws DdsError if the domain or its participant cannot be made.
+  explicit Domain(const DomainConfig& config);
+  Domain(const Domain&) = delete;
+  Domain& operator=(const Domain&) = delete;
+  ~Domain();
+
+  struct Topic {
+    std::int32_t entity = 0;
+    const SampleType* type = nullptr;
+  };
+
+  /// The topic called `name` ("/r1/scan", on the wire "rt/r1/scan"), made on first use. Throws DdsError when the name is
+  /// in use with another type, or the type's name with another layout: Cyclone itself would accept both silently.
+  Topic topic(const std::string& name, const TypeSupport& type);
+
+  std::int32_t participant() const { return participant_; }
+
+ private:
+  struct Known {
+    Topic topic;
+    const TypeSupport* type;
+  };
+
+  std::int32_t domain_ = 0;
+  std::int32_t participant_ = 0;
+  std::mutex mutex_;
+  std::map<std::string, Known> topics_;
+  std::map<std::string, const TypeSupport*> types_;
+};
+
+}  // namespace kervan::dds

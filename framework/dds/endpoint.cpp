@@ -1,0 +1,197 @@
+#include "framework/dds/endpoint.hpp"
+
+#include <dds/dds.h>
+#include <dds/ddsc/dds_rhc.h>
+#include <dds/ddsi/ddsi_tkmap.h>
+#include <dds/ddsi/q_protocol.h>
+
+#include <cstdio>
+
+#include "framework/component/sample.hpp"
+#include "framework/dds/sample_block.hpp"
+
+namespace kervan::dds {
+
+bool is_disposed(const SampleBlock* block) noexcept {
+  return (block->statusinfo & NN_STATUSINFO_DISPOSE) != 0 || block->kind != SDK_DATA;
+}
+
+namespace {
+
+struct QosDeleter {
+  void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
+};
+using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
+
+dds_duration_t to_dds(Duration duration) { return duration == forever ? DDS_INFINITY : duration.count(); }
+
+/// What reader and writer have in common.
+QosHandle endpoint_qos(const QosProfile& profile, CyclonePart part) {
+  QosHandle qos(dds_create_qos());
+  const bool carrier = part == CyclonePart::carrier;
+  const bool reliable = carrier || profile.reliability == Reliability::reliable;
+  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_INFINITY);
+  if (carrier || profile.depth == 0)
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+  else
+    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, profile.depth);
+  if (profile.durability == Durability::transient_local) {
+    // A late joiner gets what the durability service keeps, not what the writer's history keeps: set both.
+    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
+    const bool keep_all = profile.depth == 0;
+    dds_qset_durability_service(qos.get(), 0, keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST,
+                                keep_all ? DDS_LENGTH_UNLIMITED : profile.depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  } else {
+    dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+  }
+  const auto ownership = !carrier && profile.ownership == Ownership::exclusive ? DDS_OWNERSHIP_EXCLUSIVE
+                                                                               : DDS_OWNERSHIP_SHARED;
+  dds_qset_ownership(qos.get(), ownership);
+  if (!carrier) dds_qset_deadline(qos.get(), to_dds(profile.deadline));
+  return qos;
+}
+
+/// Kervan's reader history cache. Cyclone calls store() for each sample instead of keeping it, so there is one cache with
+/// one meaning of history, lifespan and ownership: the port's.
+struct ReaderCache {
+  dds_rhc base;
+  SampleSink* sink;
+};
+
+SampleSink& sink_of(ddsi_rhc* rhc) { return *reinterpret_cast<ReaderCache*>(rhc)->sink; }
+
+bool store(ddsi_rhc* __restrict rhc, const ddsi_writer_info* __restrict writer, ddsi_serdata* __restrict sample,
+           ddsi_tkmap_instance* __restrict instance) {
+  // A writer that leaves tells so through unregister_wr; an unregistering sample carries no data.
+  if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !(sample->statusinfo & NN_STATUSINFO_DISPOSE) &&
+      sample->kind != SDK_DATA)
+    return true;
+  sink_of(rhc).on_sample({as_block(sample), writer->iid, instance->m_iid, writer->ownership_strength});
+  return true;  // a refusal would make the writer wait and retry, and other readers miss the sample
+}
+
+const dds_rhc_ops& reader_cache_operations() {
+  static const dds_rhc_ops operations = [] {
+    dds_rhc_ops ops{};
+    ops.rhc_ops.store = store;
+    ops.rhc_ops.unregister_wr = [](ddsi_rhc* __restrict rhc, const ddsi_writer_info* __restrict writer) {
+      sink_of(rhc).on_writer_gone(writer->iid);
+    };
+    ops.rhc_ops.relinquish_ownership = [](ddsi_rhc* __restrict rhc, const std::uint64_t writer) {
+      sink_of(rhc).on_writer_gone(writer);
+    };
+    ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
+    ops.rhc_ops.free = [](ddsi_rhc* rhc) { delete reinterpret_cast<ReaderCache*>(rhc); };
+    // Nothing is kept here, so there is nothing to read.
+    ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
+                             dds_instance_handle_t, dds_readcond*) -> std::int32_t { return 0; };
+    ops.readcdr = ops.takecdr = [](dds_rhc*, bool, ddsi_serdata**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
+                                   std::uint32_t, std::uint32_t, dds_instance_handle_t) -> std::int32_t { return 0; };
+    ops.add_readcondition = [](dds_rhc*, dds_readcond*) { return false; };
+    ops.remove_readcondition = [](dds_rhc*, dds_readcond*) {};
+    ops.lock_samples = [](dds_rhc*) -> std::uint32_t { return 0; };
+    ops.associate = [](dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) -> dds_return_t {
+      return DDS_RETCODE_OK;
+    };
+    return ops;
+  }();
+  return operations;
+}
+
+}  // namespace
+
+Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
+               CyclonePart part, SampleSink& sink) {
+  const Domain::Topic handle = domain.topic(topic, type);
+  const QosHandle qos = endpoint_qos(profile, part);
+  // Any budget a writer offers is good enough: it only says whether sending may wait for Cyclone's own thread.
+  dds_qset_latency_budget(qos.get(), DDS_INFINITY);
+  auto* cache = new ReaderCache{};
+  cache->base.common.ops = &reader_cache_operations();
+  cache->sink = &sink;
+  dds_listener_t* listener = dds_create_listener(&sink);
+  dds_lset_subscription_matched(listener, [](dds_entity_t, dds_subscription_matched_status_t, void* to) {
+    static_cast<SampleSink*>(to)->on_status();
+  });
+  dds_lset_requested_incompatible_qos(listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t, void* to) {
+    static_cast<SampleSink*>(to)->on_status();
+  });
+  entity_ = dds_create_reader_rhc(domain.participant(), handle.entity, qos.get(), listener, &cache->base);
+  dds_delete_listener(listener);
+  if (entity_ < 0)
+    throw DdsError("cannot create a reader of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));
+}
+
+Reader::~Reader() { dds_delete(entity_); }
+
+EndpointStatus Reader::status() const {
+  EndpointStatus status;
+  dds_subscription_matched_status_t matched;
+  if (dds_get_subscription_matched_status(entity_, &matched) == DDS_RETCODE_OK) {
+    status.matched = matched.current_count;
+    status.matched_ever = matched.total_count;
+  }
+  dds_requested_incompatible_qos_status_t incompatible;
+  if (dds_get_requested_incompatible_qos_status(entity_, &incompatible) == DDS_RETCODE_OK) {
+    status.incompatible = incompatible.total_count;
+    status.last_incompatible_id = incompatible.last_policy_id;
+  }
+  return status;
+}
+
+Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
+               CyclonePart part, int strength, unsigned index)
+    : topic_(domain.topic(topic, type)) {
+  const QosHandle qos = endpoint_qos(profile, part);
+  if (part == CyclonePart::whole_profile) {
+    dds_qset_lifespan(qos.get(), to_dds(profile.lifespan));
+    if (profile.ownership == Ownership::exclusive) dds_qset_ownership_strength(qos.get(), strength);
+  }
+  // A budget above zero leaves sending to Cyclone's own thread, so local readers do not wait for the network.
+  dds_qset_latency_budget(qos.get(), profile.network == Network::async ? DDS_USECS(1) : 0);
+  // Peers read our place in the composition and the layout we publish.
+  char user_data[64];
+  const int length = std::snprintf(user_data, sizeof user_data, "kw=%u;kl=%016llx;", index,
+                                   static_cast<unsigned long long>(type.layout_hash));
+  dds_qset_userdata(qos.get(), user_data, static_cast<std::size_t>(length));
+  entity_ = dds_create_writer(domain.participant(), topic_.entity, qos.get(), nullptr);
+  if (entity_ < 0)
+    throw DdsError("cannot create a writer of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));
+  dds_get_instance_handle(entity_, &handle_);
+}
+
+Writer::~Writer() { dds_delete(entity_); }
+
+SampleBlock* Writer::loan(bool cleared) {
+  SampleBlock* block = topic_.type->pool->get(topic_.type, SDK_DATA);
+  if (cleared) topic_.type->support->reset(block->value);
+  return block;
+}
+
+void Writer::publish(SampleBlock* block, Time now, bool dispose) {
+  block->received = now;
+  block->timestamp.v = now.time_since_epoch().count();
+  // The value goes along with the dispose: plain disposes of one instance merge, so they could not be counted.
+  block->statusinfo = dispose ? NN_STATUSINFO_DISPOSE : 0;
+  seal(block);
+  if (const dds_return_t code = dds_forwardcdr(entity_, block); code < 0)
+    throw DdsError(std::string("publishing ") + topic_.type->support->name + " failed: " + dds_strretcode(-code));
+}
+
+EndpointStatus Writer::status() const {
+  EndpointStatus status;
+  dds_publication_matched_status_t matched;
+  if (dds_get_publication_matched_status(entity_, &matched) == DDS_RETCODE_OK) {
+    status.matched = matched.current_count;
+    status.matched_ever = matched.total_count;
+  }
+  dds_offered_incompatible_qos_status_t incompatible;
+  if (dds_get_offered_incompatible_qos_status(entity_, &incompatible) == DDS_RETCODE_OK) {
+    status.incompatible = incompatible.total_count;
+    status.last_incompatible_id = incompatible.last_policy_id;
+  }
+  return status;
+}
+
+}  // namespace kervan::dds

@@ -1,0 +1,91 @@
+/// DDS readers and writers as Kervan uses them: samples arrive by a call into our own reader cache, leave as blocks.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "framework/component/qos.hpp"
+#include "framework/dds/domain.hpp"
+
+namespace kervan::dds {
+
+struct SampleBlock;
+
+/// Whether Cyclone is asked for the whole profile or only carries samples. Under a logical clock it must only carry:
+/// reliable, everything kept, no time-based policies; history and times are then the sample cache's alone.
+enum class CyclonePart { whole_profile, carrier };
+
+/// One event of an endpoint, as a value.
+struct EndpointStatus {
+  std::uint32_t matched = 0;               ///< peers matched now
+  std::uint32_t matched_ever = 0;
+  std::uint32_t incompatible = 0;          ///< peers refused for their QoS, so far
+  std::uint32_t last_incompatible_id = 0;  ///< DDS policy id of the last refusal
+};
+
+/// What travels with a block from its writer to a reader of it.
+struct Arrival {
+  SampleBlock* block;             ///< not retained; retain it to keep it
+  std::uint64_t writer;           ///< Cyclone's instance handle of the writer
+  std::uint64_t instance;         ///< the same for equal keys, as long as the domain lives
+  std::int32_t strength;          ///< the writer's ownership strength
+};
+
+/// Receives samples under Cyclone's locks, in the thread that published or that received from the network. It may only
+/// store and mark: no call back into DDS, no user code.
+class SampleSink {
+ public:
+  virtual void on_sample(const Arrival& arrival) noexcept = 0;
+  /// The writer is gone or no longer alive.
+  virtual void on_writer_gone(std::uint64_t writer) noexcept = 0;
+  /// A status of the reader changed.
+  virtual void on_status() noexcept = 0;
+
+ protected:
+  ~SampleSink() = default;
+};
+
+class Reader {
+ public:
+  /// `sink` must outlive the reader. Throws DdsError.
+  Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
+         CyclonePart part, SampleSink& sink);
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  /// After this no call into the sink is under way or will come.
+  ~Reader();
+
+  EndpointStatus status() const;
+
+ private:
+  std::int32_t entity_ = 0;
+};
+
+class Writer {
+ public:
+  /// `index` is the writer's place in the composition, the same everywhere. Throws DdsError.
+  Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
+         CyclonePart part, int strength, unsigned index);
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+  ~Writer();
+
+  /// A block to fill; `cleared`: its value is default-initialised, keeping the memory it owns.
+  SampleBlock* loan(bool cleared);
+
+  /// Publishes the block, which must be this writer's loan, and gives it up. Throws DdsError if Cyclone refuses it.
+  void publish(SampleBlock* block, Time now, bool dispose);
+
+  /// Cyclone's instance handle, as readers see it in Arrival::writer.
+  std::uint64_t handle() const { return handle_; }
+  EndpointStatus status() const;
+
+ private:
+  Domain::Topic topic_;
+  std::int32_t entity_ = 0;
+  std::uint64_t handle_ = 0;
+};
+
+}  // namespace kervan::dds

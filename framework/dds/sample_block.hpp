@@ -1,0 +1,99 @@
+/// Private to framework/dds: one pooled block per sample. It is Cyclone's serdata, the receive stamp, the CDR made at most
+/// once and only for a remote reader, and the C++ value itself. Local readers get the block the publisher filled.
+#pragma once
+
+#include <dds/dds.h>
+#include <dds/ddsi/ddsi_serdata.h>
+#include <dds/ddsi/ddsi_serdata_default.h>
+#include <dds/ddsi/ddsi_sertype.h>
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "framework/component/time.hpp"
+#include "framework/dds/type_support.hpp"
+
+namespace kervan::dds {
+
+class BlockPool;
+
+/// The prefix that sample blocks share with the key-only entries of Cyclone's instance map, so that keys compare alike.
+struct KeyedBlock : ddsi_serdata {
+  BlockPool* pool = nullptr;  ///< nullptr: a key-only entry, owned by the instance map
+  std::string key;            ///< big-endian key as DDS prescribes for the key hash; empty for keyless types
+};
+
+/// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4.
+struct CdrBytes {
+  std::uint32_t size;         ///< with the header, without the padding
+  std::byte* data() { return reinterpret_cast<std::byte*>(this + 1); }
+};
+
+struct SampleBlock : KeyedBlock {
+  std::atomic<CdrBytes*> cdr{nullptr};
+  SampleBlock* next_free = nullptr;
+  std::size_t pooled_bytes = 0;  ///< what the block accounts for while it lies in the pool
+  Time received{};               ///< on this process' clock; the publishing time for a local sample
+  void* value = nullptr;         ///< behind this struct, suitably aligned
+};
+
+inline const SampleBlock* as_block(const ddsi_serdata* serdata) { return static_cast<const SampleBlock*>(serdata); }
+inline SampleBlock* as_block(ddsi_serdata* serdata) { return static_cast<SampleBlock*>(serdata); }
+
+/// Blocks of one type, kept for reuse with the memory their values own. It outlives the type as long as somebody holds
+/// a sample.
+class BlockPool {
+ public:
+  explicit BlockPool(const TypeSupport& support) : support_(support) {}
+  BlockPool(const BlockPool&) = delete;
+  BlockPool& operator=(const BlockPool&) = delete;
+
+  /// A block whose value holds whatever its last user left; reference count 1.
+  SampleBlock* get(const ddsi_sertype* type, ddsi_serdata_kind kind);
+  /// Takes back a block nobody refers to.
+  void put(SampleBlock* block) noexcept;
+  /// The type is gone; the pool deletes itself with its last block.
+  void close() noexcept;
+
+  const TypeSupport& support() const { return support_; }
+  std::size_t allocated() const { return allocated_.load(std::memory_order_relaxed); }
+
+ private:
+  ~BlockPool() = default;
+  SampleBlock* allocate();
+  void destroy(SampleBlock* block) noexcept;
+  void lock() noexcept {
+    while (spin_.test_and_set(std::memory_order_acquire)) {
+    }
+  }
+  void unlock() noexcept { spin_.clear(std::memory_order_release); }
+
+  static constexpr std::size_t kMaxPooledBytes = std::size_t{8} << 20;
+  static constexpr std::size_t kAlwaysPooled = 4;  ///< so that even the largest messages are reused
+
+  const TypeSupport& support_;
+  std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
+  SampleBlock* free_ = nullptr;
+  std::size_t free_count_ = 0;
+  std::size_t free_bytes_ = 0;
+  std::size_t outstanding_ = 0;
+  bool closed_ = false;
+  std::atomic<std::size_t> allocated_{0};
+};
+
+/// Our Cyclone sample type.
+struct SampleType : ddsi_sertype {
+  const TypeSupport* support = nullptr;
+  BlockPool* pool = nullptr;
+  ddsi_sertype_default description{};  ///< idlc's descriptor, the source of XTypes information
+};
+
+/// Makes the (unregistered) Cyclone type of `support`.
+SampleType* make_sample_type(const TypeSupport& support);
+
+/// Sets the block's key and hash from its value; for keyless types just the hash.
+void seal(SampleBlock* block);
+
+}  // namespace kervan::dds

@@ -1,0 +1,314 @@
+#include "framework/runtime/container.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "framework/component/error.hpp"
+#include "framework/dds/hash.hpp"
+#include "framework/dds/wall_clock.hpp"
+#include "framework/runtime/dispatcher.hpp"
+#include "framework/runtime/log.hpp"
+#include "framework/runtime/status.hpp"
+#include "framework/runtime/workers.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+/// More cycles than this at one time mean that ports publish to each other for ever.
+constexpr unsigned kMaxCycles = 1000;
+
+constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);
+
+}  // namespace
+
+std::string_view to_text(RunEnd end) {
+  switch (end) {
+    case RunEnd::finished: return "finished";
+    case RunEnd::time_limit: return "time limit";
+    case RunEnd::interrupted: return "interrupted";
+    case RunEnd::idle: return "idle";
+    case RunEnd::livelock: return "livelock";
+  }
+  return "unknown";
+}
+
+Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(std::move(spec)) {
+  domain_ = std::make_unique<dds::Domain>(spec_.domain);
+  log_sinks_ = std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder,
+                                          spec_.publish_log ? domain_.get() : nullptr);
+  status_writer_ = std::make_unique<StatusWriter>(*domain_);
+  unsigned first_writer = 0;
+  for (const ComponentSpec& component : spec_.components) {
+    const ComponentClass* type = registry.find(component.type);
+    if (!type) throw ConfigError({}, "there is no component type '" + component.type + "'");
+    try {
+      instances_.push_back(std::make_unique<ComponentInstance>(
+          *this, component, *type, static_cast<unsigned>(instances_.size()), first_writer));
+    } catch (const ParameterError& error) {
+      throw ParameterError(component.name + "." + error.parameter(), error.message());
+    }
+    for (const auto& output : instances_.back()->outputs())
+      writer_indices_.emplace(output->writer().handle(), output->index());
+    first_writer += static_cast<unsigned>(instances_.back()->outputs().size());
+  }
+  if (spec_.clock == ClockMode::lockstep && spec_.threads > 1) workers_ = std::make_unique<WorkerPool>(spec_.threads);
+}
+
+Container::~Container() {
+  instances_.clear();
+  status_writer_.reset();
+  log_sinks_.reset();
+}
+
+ComponentInstance* Container::find(const std::string& name) {
+  for (const auto& instance : instances_)
+    if (instance->name() == name) return instance.get();
+  return nullptr;
+}
+
+std::uint64_t Container::trace_hash() const {
+  Hash64 hash;
+  for (const auto& instance : instances_) {
+    for (const auto& output : instance->outputs()) {
+      hash.number(output->index());
+      hash.number(output->trace());
+    }
+  }
+  return hash.value();
+}
+
+void Container::input_ready(InputPort& port) noexcept {
+  ComponentInstance& instance = port.owner();
+  if (spec_.clock == ClockMode::wall) {
+    instance.notify();
+    return;
+  }
+  if (instance.schedule.exchange(1, std::memory_order_acq_rel) != 0) return;
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  ready_.push_back(&instance);
+  ready_spin_.clear(std::memory_order_release);
+}
+
+void Container::request_finish(unsigned component, std::string why) {
+  const std::lock_guard lock(finish_mutex_);
+  // The first component in the composition's order gives the reason, whichever thread came first.
+  if (!finish_ || component < finish_->first) finish_.emplace(component, std::move(why));
+  finish_requested_ = true;
+}
+
+std::optional<std::string> Container::finish_reason() {
+  if (!finish_requested_.load(std::memory_order_relaxed)) return std::nullopt;
+  const std::lock_guard lock(finish_mutex_);
+  return finish_ ? std::optional(finish_->second) : std::nullopt;
+}
+
+unsigned Container::writer_index(std::uint64_t handle) const {
+  const auto found = writer_indices_.find(handle);
+  return found != writer_indices_.end() ? found->second : ~0u;
+}
+
+void Container::publish_status(ComponentInstance& instance) {
+  status_writer_->publish(instance, spec_.name, instance.instant().time);
+}
+
+void Container::publish_changed_statuses() {
+  for (const auto& instance : instances_)
+    if (instance->take_status_changed()) publish_status(*instance);
+}
+
+std::shared_ptr<spdlog::logger> Container::make_logger(const ComponentSpec& spec) {
+  return log_sinks_->make(spec.name, spec.log_level);
+}
+
+void Container::activate() {
+  instant_ = {spec_.clock == ClockMode::wall ? dds::wall_now() : Time{}, 0};
+  started_ = instant_.time;
+  for (const auto& instance : instances_) instance->activate(instant_);
+  publish_changed_statuses();
+}
+
+Time Container::next_due() const {
+  Time due = Time::max();
+  for (const auto& instance : instances_) due = std::min(due, instance->next_due());
+  return due;
+}
+
+void Container::for_each_parallel(const std::vector<ComponentInstance*>& instances,
+                                  const std::function<void(ComponentInstance&)>& work) {
+  if (workers_ && instances.size() > 1)
+    workers_->run(instances.size(), [&](std::size_t i) { work(*instances[i]); });
+  else
+    for (ComponentInstance* instance : instances) work(*instance);
+}
+
+/// Handles what was published in the cycle before; false if there was nothing.
+bool Container::run_cycle_of_inputs() {
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  batch_.clear();
+  batch_.swap(ready_);
+  ready_spin_.clear(std::memory_order_release);
+  if (batch_.empty()) return false;
+  ++instant_.cycle;
+  ++cycles_;
+  std::sort(batch_.begin(), batch_.end(),
+            [](const ComponentInstance* a, const ComponentInstance* b) { return a->index() < b->index(); });
+  // All are staged before any runs: a sample published in this cycle belongs to the next.
+  for (ComponentInstance* instance : batch_) {
+    instance->schedule.store(0, std::memory_order_release);
+    instance->stage(instant_.time);
+  }
+  for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_inputs(instant_); });
+  return true;
+}
+
+/// Handles everything at the present time; false, with the report filled, if it never ends.
+bool Container::run_one_time(RunReport& report) {
+  instant_.cycle = 0;
+  std::vector<ComponentInstance*> due;
+  for (const auto& instance : instances_)
+    if (instance->next_due() <= instant_.time) due.push_back(instance.get());
+  if (!due.empty()) {
+    ++cycles_;
+    for_each_parallel(due, [this](ComponentInstance& instance) { instance.run_due(instant_); });
+  }
+  while (run_cycle_of_inputs()) {
+    if (instant_.cycle < kMaxCycles) continue;
+    report.end = RunEnd::livelock;
+    report.reason = "components publish to each other for ever at one time: ";
+    for (const ComponentInstance* instance : batch_)
+      report.reason += (instance == batch_.front() ? "" : ", ") + instance->name();
+    return false;
+  }
+  publish_changed_statuses();
+  return true;
+}
+
+void Container::advance(Time until) {
+  RunReport report;
+  for (;;) {
+    if (!run_one_time(report)) throw std::runtime_error(report.reason);
+    const Time next = next_due();
+    if (next > until) break;
+    instant_ = {next, 0};
+  }
+  instant_ = {until, 0};
+}
+
+RunReport Container::run_lockstep(const RunControl& control) {
+  using Clock = std::chrono::steady_clock;
+  RunReport report;
+  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
+  Clock::time_point next_progress = Clock::now();
+  for (unsigned steps = 0;; ++steps) {
+    if (!run_one_time(report)) break;
+    if (const auto why = finish_reason()) {
+      report.end = RunEnd::finished;
+      report.reason = *why;
+      break;
+    }
+    if (control.stop && control.stop->load(std::memory_order_relaxed)) {
+      report.end = RunEnd::interrupted;
+      report.reason = "interrupted";
+      break;
+    }
+    if (control.progress && steps % 16 == 0 && Clock::now() >= next_progress) {
+      control.progress(instant_.time);
+      next_progress = Clock::now() + kProgressPeriod;
+    }
+    const Time next = next_due();
+    if (next == Time::max()) {
+      report.end = RunEnd::idle;
+      report.reason = "no component has a timer, so nothing would ever happen again";
+      break;
+    }
+    if (next > end) {
+      instant_ = {end, 0};
+      report.end = RunEnd::time_limit;
+      report.reason = "the time asked for has passed";
+      break;
+    }
+    instant_ = {next, 0};
+  }
+  return report;
+}
+
+RunReport Container::run_wall(const RunControl& control) {
+  RunReport report;
+  std::atomic<bool> over{false};
+  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
+  Time next_progress = started_;
+  dispatchers_.clear();
+  dispatchers_.push_back(std::make_unique<Dispatcher>());
+  for (const auto& instance : instances_) {
+    Dispatcher* dispatcher = dispatchers_.front().get();
+    if (instance->wants_own_thread()) dispatcher = dispatchers_.emplace_back(std::make_unique<Dispatcher>()).get();
+    instance->dispatcher = dispatcher;
+    dispatcher->enqueue(*instance);  // whatever came during activation
+  }
+  std::vector<std::thread> threads;
+  const auto serve = [&over](Dispatcher& dispatcher) {
+    dispatcher.run([&over] { return over.load(std::memory_order_relaxed); });
+  };
+  for (std::size_t i = 1; i < dispatchers_.size(); ++i) threads.emplace_back(serve, std::ref(*dispatchers_[i]));
+  for (unsigned i = 1; i < spec_.threads; ++i) threads.emplace_back(serve, std::ref(*dispatchers_.front()));
+  // The calling thread works too, and asks after each component whether the run has ended.
+  dispatchers_.front()->run([&] {
+    if (finish_requested_.load(std::memory_order_relaxed)) {
+      report.end = RunEnd::finished;
+      report.reason = finish_reason().value_or("finished");
+      return true;
+    }
+    if (control.stop && control.stop->load(std::memory_order_relaxed)) {
+      report.end = RunEnd::interrupted;
+      report.reason = "interrupted";
+      return true;
+    }
+    if (end == Time::max() && !control.progress) return false;
+    const Time now = dds::wall_now();
+    if (now >= end) {
+      report.end = RunEnd::time_limit;
+      report.reason = "the time asked for has passed";
+      return true;
+    }
+    if (control.progress && now >= next_progress) {
+      control.progress(now);
+      next_progress = now + kProgressPeriod;
+    }
+    return false;
+  });
+  over = true;
+  for (std::thread& thread : threads) thread.join();
+  for (const auto& instance : instances_) instance->dispatcher = nullptr;
+  instant_ = {dds::wall_now(), 0};
+  return report;
+}
+
+void Container::end() {
+  // Last words first, then everybody hears them, then nobody speaks any more.
+  for (const auto& instance : instances_) instance->deactivate(instant_);
+  if (spec_.clock == ClockMode::lockstep) {
+    while (instant_.cycle < kMaxCycles && run_cycle_of_inputs()) {
+    }
+  } else {
+    for (const auto& instance : instances_) {
+      instance->stage(instant_.time);
+      instance->run_inputs(instant_);
+    }
+  }
+  for (const auto& instance : instances_) instance->shutdown(instant_);
+  publish_changed_statuses();
+}
+
+RunReport Container::run(const RunControl& control) {
+  activate();
+  RunReport report = spec_.clock == ClockMode::lockstep ? run_lockstep(control) : run_wall(control);
+  end();
+  report.ended_at = instant_.time;
+  report.cycles = cycles_;
+  return report;
+}
+
+}  // namespace kervan::runtime

@@ -1,0 +1,114 @@
+/// Runs the components of one process. The clock decides who drives it: the wall clock's dispatcher or lockstep.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/component/registry.hpp"
+#include "framework/dds/endpoint.hpp"
+#include "framework/runtime/instance.hpp"
+#include "framework/runtime/spec.hpp"
+
+namespace kervan::runtime {
+
+class Dispatcher;
+class LogSinks;
+class StatusWriter;
+class WorkerPool;
+
+/// How a run ended.
+enum class RunEnd {
+  finished,     ///< a component called finish()
+  time_limit,   ///< the time asked for has passed
+  interrupted,  ///< the stop flag was set
+  idle,         ///< lockstep only: no timer is left and no sample, so nothing would ever happen again
+  livelock,     ///< lockstep only: a loop of ports publishes for ever at one time
+};
+std::string_view to_text(RunEnd end);
+
+struct RunReport {
+  RunEnd end = RunEnd::finished;
+  std::string reason;         ///< one sentence
+  Time ended_at{};            ///< on the composition's clock
+  std::uint64_t cycles = 0;   ///< delta cycles run
+};
+
+struct RunControl {
+  Duration limit = forever;                     ///< on the composition's clock, from the start of the run
+  const std::atomic<bool>* stop = nullptr;      ///< ends the run in good order when set
+  std::function<void(Time)> progress = {};      ///< called about ten times a second of wall time
+};
+
+class Container {
+ public:
+  /// Constructs all components and all endpoints; nothing runs yet. Throws ConfigError, ParameterError or DdsError;
+  /// ParameterError names the parameter as "<component>.<parameter>".
+  Container(ContainerSpec spec, ComponentRegistry& registry);
+  ~Container();
+  Container(const Container&) = delete;
+  Container& operator=(const Container&) = delete;
+
+  /// Activates every component, runs until one of the ends, deactivates and shuts them down.
+  RunReport run(const RunControl& control);
+
+  // The same in pieces, for tests under lockstep.
+  void activate();
+  /// Handles everything at the present time, then moves to `until`, handling every time on the way.
+  void advance(Time until);
+  void end();
+
+  Time now() const { return instant_.time; }
+  bool finish_requested() const { return finish_requested_.load(); }
+  const ContainerSpec& spec() const { return spec_; }
+  dds::Domain& domain() { return *domain_; }
+  const std::vector<std::unique_ptr<ComponentInstance>>& instances() const { return instances_; }
+  ComponentInstance* find(const std::string& name);
+
+  /// The chain of every traced writer, combined in writer order.
+  std::uint64_t trace_hash() const;
+
+  // Used by the ports and instances.
+  void input_ready(InputPort& port) noexcept;
+  void request_finish(unsigned component, std::string why);
+  unsigned writer_index(std::uint64_t handle) const;
+  void publish_status(ComponentInstance& instance);
+  std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
+
+ private:
+  RunReport run_lockstep(const RunControl& control);
+  RunReport run_wall(const RunControl& control);
+  bool run_one_time(RunReport& report);
+  bool run_cycle_of_inputs();
+  void for_each_parallel(const std::vector<ComponentInstance*>& instances,
+                         const std::function<void(ComponentInstance&)>& work);
+  Time next_due() const;
+  void publish_changed_statuses();
+  std::optional<std::string> finish_reason();
+
+  ContainerSpec spec_;
+  Instant instant_;
+  Time started_{};
+  std::uint64_t cycles_ = 0;
+  std::unique_ptr<dds::Domain> domain_;
+  std::unique_ptr<LogSinks> log_sinks_;
+  std::unique_ptr<StatusWriter> status_writer_;
+  std::map<std::uint64_t, unsigned> writer_indices_;
+  std::vector<std::unique_ptr<ComponentInstance>> instances_;
+  std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
+  std::unique_ptr<WorkerPool> workers_;
+  std::atomic_flag ready_spin_ = ATOMIC_FLAG_INIT;
+  std::vector<ComponentInstance*> ready_;  ///< under ready_spin_; lockstep: instances with arrived samples
+  std::vector<ComponentInstance*> batch_;  ///< scratch of a cycle
+  std::atomic<bool> finish_requested_{false};
+  std::mutex finish_mutex_;
+  std::optional<std::pair<unsigned, std::string>> finish_;  ///< component index and reason
+};
+
+}  // namespace kervan::runtime

@@ -1,0 +1,129 @@
+#include "framework/runtime/dispatcher.hpp"
+
+#include <algorithm>
+
+#include "framework/dds/wall_clock.hpp"
+#include "framework/runtime/container.hpp"
+#include "framework/runtime/instance.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+// Values of ComponentInstance::schedule.
+constexpr int kIdle = 0;     // nothing to do
+constexpr int kQueued = 1;   // waits for a thread
+constexpr int kRunning = 2;  // a thread is in it
+constexpr int kAgain = 3;    // a thread is in it, and more has come since
+
+constexpr Duration kLongestSleep = std::chrono::milliseconds(50);
+
+/// The dispatcher whose run() this thread is in: it looks at the queue again anyway and needs no waking.
+thread_local const Dispatcher* current = nullptr;
+
+}  // namespace
+
+void Dispatcher::push(ComponentInstance& instance) noexcept {
+  instance.next_queued = nullptr;
+  if (last_)
+    last_->next_queued = &instance;
+  else
+    first_ = &instance;
+  last_ = &instance;
+}
+
+void Dispatcher::enqueue(ComponentInstance& instance) noexcept {
+  int state = instance.schedule.load(std::memory_order_relaxed);
+  for (;;) {
+    if (state == kQueued || state == kAgain) return;
+    const int wanted = state == kIdle ? kQueued : kAgain;
+    if (instance.schedule.compare_exchange_weak(state, wanted, std::memory_order_acq_rel)) break;
+  }
+  if (state == kRunning) return;  // whoever runs it will queue it again
+  bool wake;
+  {
+    const std::lock_guard lock(mutex_);
+    push(instance);
+    wake = waiting_ > 0;
+  }
+  if (wake) work_.notify_one();
+}
+
+void Dispatcher::schedule(ComponentInstance& instance) {
+  const Time due = instance.next_due();
+  if (due == instance.scheduled_for) return;
+  instance.scheduled_for = due;
+  if (due == Time::max()) return;
+  bool earliest;
+  {
+    const std::lock_guard lock(mutex_);
+    wakes_.push_back({due, &instance});
+    std::push_heap(wakes_.begin(), wakes_.end(), [](const Wake& a, const Wake& b) { return a.due > b.due; });
+    earliest = waiting_ > 0 && wakes_.front().instance == &instance;
+  }
+  if (earliest && current != this) work_.notify_one();
+}
+
+void Dispatcher::release_due(Time now) {
+  while (!wakes_.empty() && wakes_.front().due <= now) {
+    ComponentInstance& instance = *wakes_.front().instance;
+    std::pop_heap(wakes_.begin(), wakes_.end(), [](const Wake& a, const Wake& b) { return a.due > b.due; });
+    wakes_.pop_back();
+    int state = kIdle;
+    if (instance.schedule.compare_exchange_strong(state, kQueued, std::memory_order_acq_rel)) push(instance);
+    else if (state == kRunning) instance.schedule.compare_exchange_strong(state, kAgain, std::memory_order_acq_rel);
+  }
+}
+
+ComponentInstance* Dispatcher::next(const std::function<bool()>& ended) {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    if (!wakes_.empty()) release_due(dds::wall_now());
+    if (first_) {
+      ComponentInstance* instance = first_;
+      first_ = instance->next_queued;
+      if (!first_) last_ = nullptr;
+      if (first_ && waiting_ > 0) work_.notify_one();
+      return instance;
+    }
+    Duration sleep = kLongestSleep;
+    if (!wakes_.empty()) sleep = std::min(sleep, wakes_.front().due - dds::wall_now());
+    if (sleep > Duration::zero()) {
+      ++waiting_;
+      work_.wait_for(lock, sleep);
+      --waiting_;
+    }
+    if (!first_) {
+      lock.unlock();
+      if (ended()) return nullptr;
+      lock.lock();
+    }
+  }
+}
+
+void Dispatcher::run_one(ComponentInstance& instance) {
+  instance.schedule.store(kRunning, std::memory_order_release);
+  const Time now = dds::wall_now();
+  instance.run_due({now, 0});
+  instance.stage(now);
+  instance.run_inputs({now, 0});
+  if (instance.take_status_changed()) instance.container().publish_status(instance);
+  schedule(instance);
+  int state = kRunning;
+  if (instance.schedule.compare_exchange_strong(state, kIdle, std::memory_order_acq_rel)) return;
+  instance.schedule.store(kQueued, std::memory_order_release);
+  const std::lock_guard lock(mutex_);
+  push(instance);
+}
+
+void Dispatcher::run(const std::function<bool()>& ended) {
+  const Dispatcher* outer = std::exchange(current, this);
+  while (!ended()) {
+    ComponentInstance* instance = next(ended);
+    if (!instance) break;
+    run_one(*instance);
+  }
+  current = outer;
+}
+
+}  // namespace kervan::runtime

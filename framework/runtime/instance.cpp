@@ -1,0 +1,139 @@
+#include "framework/runtime/instance.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "framework/component/error.hpp"
+#include "framework/runtime/container.hpp"
+#include "framework/runtime/dispatcher.hpp"
+#include "framework/runtime/log.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+/// The composition's binding of a port, or the one its declaration implies.
+PortBinding binding_of(const ComponentSpec& spec, const PortInfo& port) {
+  for (const PortBinding& binding : spec.ports)
+    if (binding.port == port.name) return binding;
+  return {port.name, port.name.starts_with('/') ? port.name : "/" + port.name,
+          builtin_profile(port.qos.profile()).value()};
+}
+
+}  // namespace
+
+ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type,
+                                     unsigned index, unsigned first_writer)
+    : container_(container), type_(type.type), index_(index), log_(container.make_logger(spec)) {
+  ComponentSetup setup;
+  setup.name = spec.name;
+  setup.parameters = &spec.parameters;
+  setup.run_folder = container.spec().run_folder;
+  component_ = construct(type, setup);
+  const ClockMode clock = container.spec().clock;
+  for (OutputBase* output : component_->outputs_)
+    outputs_.push_back(std::make_unique<OutputPort>(*output, binding_of(spec, output->info()), *this,
+                                                    container.domain(), clock,
+                                                    first_writer + static_cast<unsigned>(outputs_.size())));
+  for (InputBase* input : component_->inputs_)
+    inputs_.push_back(
+        std::make_unique<InputPort>(*input, binding_of(spec, input->info()), *this, container.domain(), clock));
+  component_->instance_ = this;
+}
+
+ComponentInstance::~ComponentInstance() {
+  // Endpoints go first: after that no sample can arrive at a component that is being destroyed.
+  inputs_.clear();
+  outputs_.clear();
+  component_.reset();
+}
+
+bool ComponentInstance::running() const {
+  return component_->state_ == ComponentState::active || component_->state_ == ComponentState::degraded;
+}
+
+void ComponentInstance::set_state(ComponentState state, std::string reason) {
+  if (component_->state_ == state && component_->reason_ == reason) return;
+  component_->state_ = state;
+  component_->reason_ = std::move(reason);
+  status_changed_ = true;
+  if (state == ComponentState::degraded)
+    log_->warn("degraded: {}", component_->reason_);
+  else if (state == ComponentState::failed)
+    log_->error("failed: {}", component_->reason_);
+  else
+    log_->debug("{}", to_text(state));
+}
+
+template <class Code>
+void ComponentInstance::guarded(const char* where, Instant now, Code&& code) {
+  instant_ = now;
+  const LogTime log_time(now.time);
+  try {
+    code();
+  } catch (const std::exception& error) {
+    set_state(ComponentState::failed, std::string(error.what()) + " (in " + where + ")");
+  } catch (...) {
+    set_state(ComponentState::failed, std::string("something that is no std::exception was thrown in ") + where);
+  }
+}
+
+void ComponentInstance::activate(Instant now) {
+  for (const Timer* timer : component_->timers_) timers_.push_back({timer, now.time});
+  set_state(ComponentState::active, {});
+  guarded("on_activate", now, [&] { component_->on_activate(now.time); });
+}
+
+void ComponentInstance::deactivate(Instant now) {
+  if (!running()) return;
+  guarded("on_deactivate", now, [&] { component_->on_deactivate(now.time); });
+}
+
+void ComponentInstance::shutdown(Instant now) {
+  const bool was_running = running();
+  guarded("on_shutdown", now, [&] { component_->on_shutdown(now.time); });
+  if (was_running && running()) set_state(ComponentState::stopped, {});
+}
+
+Time ComponentInstance::next_due() const {
+  Time due = Time::max();
+  if (!running()) return due;
+  for (const auto& input : inputs_) due = std::min(due, input->cache().next_deadline());
+  for (const TimerState& timer : timers_) due = std::min(due, timer.due);
+  return due;
+}
+
+void ComponentInstance::run_due(Instant now) {
+  if (!running()) return;
+  for (const auto& input : inputs_)
+    if (input->cache().next_deadline() <= now.time && input->cache().check_deadlines(now.time)) status_changed_ = true;
+  for (TimerState& timer : timers_) {
+    if (timer.due > now.time || !running()) continue;
+    const Duration period = timer.timer->period();
+    timer.due += period;
+    // Periods that passed while the component was held up are skipped, not made up for in a burst.
+    if (timer.due <= now.time) timer.due += (now.time - timer.due) / period * period + period;
+    guarded("a timer", now, [&] { timer.timer->fire(now.time); });
+  }
+}
+
+void ComponentInstance::stage(Time now) {
+  for (const auto& input : inputs_)
+    if (input->take_ready()) input->stage(now);
+}
+
+void ComponentInstance::run_inputs(Instant now) {
+  for (const auto& input : inputs_) {
+    if (!running()) return;
+    if (input->has_handler() && input->cache().has_fresh())
+      guarded(input->binding().port.c_str(), now, [&] { input->deliver(now.time); });
+  }
+}
+
+void ComponentInstance::notify() noexcept {
+  if (dispatcher) dispatcher->enqueue(*this);
+}
+
+}  // namespace kervan::runtime

@@ -1,0 +1,160 @@
+#include "framework/runtime/ports.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "framework/dds/hash.hpp"
+#include "framework/runtime/container.hpp"
+#include "framework/runtime/instance.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+/// How many samples may wait in the inbox of a component that does not come to look, beyond what its history keeps.
+constexpr std::size_t kInboxSlack = 64;
+
+dds::CyclonePart part_of(ClockMode clock) {
+  return clock == ClockMode::wall ? dds::CyclonePart::whole_profile : dds::CyclonePart::carrier;
+}
+
+}  // namespace
+
+InputPort::InputPort(InputBase& input, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
+                     ClockMode clock)
+    : input_(input),
+      binding_(binding),
+      owner_(owner),
+      clock_(clock),
+      cache_(binding.profile, input.info().qos.max_age(), input.type().keyed) {
+  reader_ = std::make_unique<dds::Reader>(domain, binding.topic, input.type(), binding.profile, part_of(clock), *this);
+  input.port_ = this;
+}
+
+InputPort::~InputPort() {
+  input_.port_ = nullptr;
+  reader_.reset();  // no sample arrives from here on
+  for (const dds::Arrival& arrival : inbox_) dds::release(arrival.block);
+  for (dds::SampleBlock* block : given_) dds::release(block);
+}
+
+void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
+  dds::retain(arrival.block);
+  dds::SampleBlock* overflow = nullptr;
+  lock();
+  // Only a component that does not run lets its inbox fill up; what it would drop anyway when it runs again goes now.
+  // Under lockstep nothing may depend on how fast anybody is, so everything is kept.
+  const auto depth = static_cast<std::size_t>(binding_.profile.depth);
+  if (clock_ == ClockMode::wall && depth > 0 && !input_.type().keyed && inbox_.size() >= depth + kInboxSlack) {
+    overflow = inbox_.front().block;
+    inbox_.erase(inbox_.begin());
+    ++overflowed_;
+  }
+  inbox_.push_back(arrival);
+  unlock();
+  if (overflow) dds::release(overflow);
+  if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
+}
+
+void InputPort::on_writer_gone(std::uint64_t writer) noexcept {
+  lock();
+  gone_.push_back(writer);
+  unlock();
+  if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
+}
+
+PortCounters InputPort::counters() const {
+  PortCounters counters = cache_.counters();
+  lock();
+  counters.refused = overflowed_;
+  unlock();
+  return counters;
+}
+
+void InputPort::stage(Time now) {
+  lock();
+  arrived_.swap(inbox_);
+  const std::vector<std::uint64_t> gone = std::exchange(gone_, {});
+  unlock();
+  const bool ordered = clock_ == ClockMode::lockstep;
+  const bool needs_writers = ordered || binding_.profile.ownership == Ownership::exclusive;
+  staged_.clear();
+  for (const dds::Arrival& arrival : arrived_) {
+    const unsigned writer = needs_writers ? owner_.container().writer_index(arrival.writer) : 0;
+    const Time received = ordered ? now : dds::received_at(arrival.block);
+    staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
+  }
+  arrived_.clear();
+  // Each writer's samples arrived in the order of their sequence, so sorting by writer gives (writer, sequence).
+  if (ordered)
+    std::stable_sort(staged_.begin(), staged_.end(),
+                     [](const StagedSample& a, const StagedSample& b) { return a.writer < b.writer; });
+  cache_.stage(staged_);
+  for (const std::uint64_t writer : gone) cache_.writer_gone(owner_.container().writer_index(writer));
+}
+
+void InputPort::deliver(Time now) {
+  if (!input_.deliver_) return;
+  while (dds::SampleBlock* block = cache_.take(now)) {
+    struct Release {
+      dds::SampleBlock* block;
+      ~Release() { dds::release(block); }
+    } const release{block};
+    input_.deliver_(block, now);
+  }
+}
+
+dds::SampleBlock* InputPort::latest() const { return cache_.latest(owner_.instant().time); }
+
+std::vector<dds::SampleBlock*> InputPort::take() {
+  for (dds::SampleBlock* block : given_) dds::release(block);
+  given_.clear();
+  while (dds::SampleBlock* block = cache_.take(owner_.instant().time)) given_.push_back(block);
+  return given_;
+}
+
+std::vector<dds::SampleBlock*> InputPort::instances() const { return cache_.instances(owner_.instant().time); }
+
+std::string InputPort::missing() const {
+  const Time now = owner_.instant().time;
+  if (cache_.latest(now)) return {};
+  Time last;
+  if (!cache_.last_received(last)) return input_.name() + ": nothing received yet";
+  const Duration allowed = std::min(input_.info().qos.max_age(), binding_.profile.lifespan);
+  if (allowed == forever) return input_.name() + ": its last sample was disposed of";
+  // The same sentence for as long as it stays so: a status that changes with every period says nothing new.
+  char text[64];
+  std::snprintf(text, sizeof text, ": no sample for more than %.2f s", seconds(allowed));
+  return input_.name() + text;
+}
+
+OutputPort::OutputPort(OutputBase& output, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
+                       ClockMode clock, unsigned index)
+    : output_(output),
+      binding_(binding),
+      owner_(owner),
+      index_(index),
+      traced_(clock == ClockMode::lockstep && binding.profile.trace && output.info().qos.traced()),
+      writer_(domain, binding.topic, output.type(), binding.profile, part_of(clock), output.info().qos.strength(),
+              index) {
+  output.port_ = this;
+}
+
+OutputPort::~OutputPort() { output_.port_ = nullptr; }
+
+void OutputPort::publish(dds::SampleBlock* block, bool dispose) {
+  const Instant& at = owner_.instant();
+  ++sequence_;
+  if (traced_) {
+    Hash64 hash(trace_);
+    hash.number(at.time.time_since_epoch().count());
+    hash.number(at.cycle);
+    hash.number(sequence_);
+    hash.number(dispose);
+    output_.type().hash(dds::value_of(block), hash);
+    trace_ = hash.value();
+  }
+  writer_.publish(block, at.time, dispose);
+}
+
+}  // namespace kervan::runtime

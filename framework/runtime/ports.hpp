@@ -1,0 +1,111 @@
+/// The running side of Input and Output: a DDS reader with its inbox and sample cache, a DDS writer with its trace.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/component/ports.hpp"
+#include "framework/dds/endpoint.hpp"
+#include "framework/runtime/sample_cache.hpp"
+#include "framework/runtime/spec.hpp"
+
+namespace kervan::runtime {
+
+class ComponentInstance;
+
+/// Where the run stands: logical time and delta cycle; under the wall clock the cycle stays 0.
+struct Instant {
+  Time time{};
+  unsigned cycle = 0;
+};
+
+class InputPort final : public dds::SampleSink {
+ public:
+  InputPort(InputBase& input, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
+            ClockMode clock);
+  ~InputPort();
+
+  const std::string& name() const { return input_.name(); }
+  const TypeSupport& type() const { return input_.type(); }
+  const PortBinding& binding() const { return binding_; }
+  SampleCache& cache() { return cache_; }
+  const SampleCache& cache() const { return cache_; }
+  ComponentInstance& owner() { return owner_; }
+  const dds::Reader& reader() const { return *reader_; }
+  bool has_handler() const { return static_cast<bool>(input_.deliver_); }
+  PortCounters counters() const;
+
+  /// Moves what has arrived into the cache. Under lockstep in canonical order, stamped with the logical time.
+  void stage(Time now);
+  /// Hands every fresh sample to the handler; does nothing for a port without one.
+  void deliver(Time now);
+  /// Whether samples have arrived since the last stage(); clears the mark.
+  bool take_ready() { return ready_.exchange(false, std::memory_order_acquire); }
+
+  // Used by InputBase.
+  dds::SampleBlock* latest() const;
+  std::vector<dds::SampleBlock*> take();
+  std::vector<dds::SampleBlock*> instances() const;
+  std::string missing() const;
+
+  void on_sample(const dds::Arrival& arrival) noexcept override;
+  void on_writer_gone(std::uint64_t writer) noexcept override;
+  void on_status() noexcept override {}
+
+ private:
+  void lock() const noexcept {
+    while (spin_.test_and_set(std::memory_order_acquire)) {
+    }
+  }
+  void unlock() const noexcept { spin_.clear(std::memory_order_release); }
+
+  InputBase& input_;
+  PortBinding binding_;
+  ComponentInstance& owner_;
+  ClockMode clock_;
+  SampleCache cache_;
+  mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
+  std::vector<dds::Arrival> inbox_;        ///< under spin_; its blocks are retained
+  std::vector<std::uint64_t> gone_;        ///< under spin_: writers that left
+  std::uint64_t overflowed_ = 0;           ///< under spin_: dropped because the component did not run
+  std::vector<dds::Arrival> arrived_;      ///< scratch of stage(), swapped with inbox_
+  std::vector<StagedSample> staged_;       ///< scratch of stage()
+  std::vector<dds::SampleBlock*> given_;   ///< taken by the component, kept alive until its handler returns
+  std::atomic<bool> ready_{false};
+  std::unique_ptr<dds::Reader> reader_;    ///< last: it calls into the members above
+
+  friend class ComponentInstance;
+};
+
+class OutputPort {
+ public:
+  OutputPort(OutputBase& output, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
+             ClockMode clock, unsigned index);
+  ~OutputPort();
+
+  const std::string& name() const { return output_.name(); }
+  const TypeSupport& type() const { return output_.type(); }
+  const PortBinding& binding() const { return binding_; }
+  unsigned index() const { return index_; }  ///< of the writer, in the whole composition
+  const dds::Writer& writer() const { return writer_; }
+  std::uint64_t published() const { return sequence_; }
+  /// The chain over everything published so far; 0 while untraced.
+  std::uint64_t trace() const { return trace_; }
+
+  dds::SampleBlock* loan(bool cleared) { return writer_.loan(cleared); }
+  void publish(dds::SampleBlock* block, bool dispose);
+
+ private:
+  OutputBase& output_;
+  PortBinding binding_;
+  ComponentInstance& owner_;
+  unsigned index_;
+  bool traced_;
+  std::uint64_t sequence_ = 0;
+  std::uint64_t trace_ = 0;
+  dds::Writer writer_;
+};
+
+}  // namespace kervan::runtime

@@ -1,0 +1,163 @@
+#include "framework/runtime/sample_cache.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "framework/component/sample.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+Time later(Time t, Duration d) { return d == forever ? Time::max() : t + d; }
+}  // namespace
+
+SampleCache::SampleCache(const QosProfile& profile, Duration max_age, bool keyed)
+    : profile_(profile), max_age_(max_age), keyed_(keyed) {}
+
+SampleCache::~SampleCache() {
+  for (std::size_t i = next_fresh_; i < fresh_.size(); ++i)
+    if (fresh_[i].block) dds::release(fresh_[i].block);
+  for (const Instance& instance : instances_)
+    if (instance.newest) dds::release(instance.newest);
+}
+
+SampleCache::Instance& SampleCache::instance(std::uint64_t id) {
+  if (!keyed_) {
+    if (instances_.empty()) instances_.push_back({.id = 0});
+    return instances_.front();
+  }
+  const auto found = std::find_if(instances_.begin(), instances_.end(), [&](const Instance& i) { return i.id == id; });
+  if (found != instances_.end()) return *found;
+  instances_.push_back({.id = id});
+  return instances_.back();
+}
+
+bool SampleCache::owns(Instance& instance, const StagedSample& sample) {
+  if (profile_.ownership == Ownership::shared) return true;
+  const bool takes_over = !instance.owned || sample.writer == instance.owner ||
+                          sample.strength > instance.strength ||
+                          (sample.strength == instance.strength && sample.writer < instance.owner);
+  if (!takes_over) return false;
+  instance.owned = true;
+  instance.owner = sample.writer;
+  instance.strength = sample.strength;
+  return true;
+}
+
+void SampleCache::drop_oldest_fresh(Instance& instance) {
+  for (std::size_t i = next_fresh_; i < fresh_.size(); ++i) {
+    if (!fresh_[i].block || (keyed_ && fresh_[i].instance != instance.id)) continue;
+    dds::release(fresh_[i].block);
+    fresh_[i].block = nullptr;
+    --instance.fresh;
+    --live_fresh_;
+    if (queued_) ++counters_.overwritten;
+    break;
+  }
+  // Gaps are closed only when they prevail, so that the cost per sample stays constant.
+  if (fresh_.size() > 2 * live_fresh_ + 16) {
+    fresh_.erase(std::remove_if(fresh_.begin(), fresh_.end(), [](const Fresh& f) { return !f.block; }), fresh_.end());
+    next_fresh_ = 0;
+  }
+}
+
+void SampleCache::stage(const std::vector<StagedSample>& samples) {
+  for (const StagedSample& sample : samples) {
+    ++counters_.received;
+    Instance& target = instance(sample.instance);
+    if (!owns(target, sample)) {
+      ++counters_.not_owner;
+      dds::release(sample.block);
+      continue;
+    }
+    target.due = later(sample.received, profile_.deadline);
+    target.received = sample.received;
+    if (target.newest) dds::release(target.newest);
+    target.newest = nullptr;
+    if (!dds::is_disposed(sample.block)) {
+      dds::retain(sample.block);
+      target.newest = sample.block;
+    } else {
+      target.due = Time::max();
+      target.owned = false;
+    }
+    newest_ = static_cast<std::size_t>(&target - instances_.data());
+    if (profile_.depth > 0 && target.fresh >= profile_.depth) drop_oldest_fresh(target);
+    fresh_.push_back({sample.block, target.id, sample.received});
+    ++target.fresh;
+    ++live_fresh_;
+  }
+}
+
+dds::SampleBlock* SampleCache::take(Time now) {
+  queued_ = true;
+  while (next_fresh_ < fresh_.size()) {
+    const Fresh fresh = std::exchange(fresh_[next_fresh_++], Fresh{});
+    if (next_fresh_ == fresh_.size()) {
+      fresh_.clear();
+      next_fresh_ = 0;
+    }
+    if (!fresh.block) continue;
+    --live_fresh_;
+    --instance(fresh.instance).fresh;
+    if (later(fresh.received, profile_.lifespan) <= now) {
+      ++counters_.expired;
+      dds::release(fresh.block);
+      continue;
+    }
+    ++counters_.handled;
+    return fresh.block;
+  }
+  return nullptr;
+}
+
+bool SampleCache::too_old(Time received, Time now) const {
+  return later(received, profile_.lifespan) <= now || (max_age_ != forever && now - received > max_age_);
+}
+
+dds::SampleBlock* SampleCache::latest(Time now) const {
+  if (instances_.empty()) return nullptr;
+  const Instance& newest = instances_[newest_];
+  return newest.newest && !too_old(newest.received, now) ? newest.newest : nullptr;
+}
+
+bool SampleCache::last_received(Time& at) const {
+  if (instances_.empty()) return false;
+  at = instances_[newest_].received;
+  return true;
+}
+
+std::vector<dds::SampleBlock*> SampleCache::instances(Time now) const {
+  std::vector<dds::SampleBlock*> alive;
+  for (const Instance& instance : instances_)
+    if (instance.newest && !too_old(instance.received, now)) alive.push_back(instance.newest);
+  return alive;
+}
+
+void SampleCache::writer_gone(unsigned writer) {
+  for (Instance& instance : instances_)
+    if (instance.owned && instance.owner == writer) instance.owned = false;
+}
+
+Time SampleCache::next_deadline() const {
+  Time next = Time::max();
+  if (profile_.deadline == forever) return next;
+  for (const Instance& instance : instances_) next = std::min(next, instance.due);
+  return next;
+}
+
+bool SampleCache::check_deadlines(Time now) {
+  bool missed = false;
+  if (profile_.deadline == forever) return missed;
+  for (Instance& instance : instances_) {
+    while (instance.due <= now) {
+      ++counters_.deadline_missed;
+      instance.due = later(instance.due, profile_.deadline);
+      instance.owned = false;  // whoever missed the deadline no longer owns the instance
+      missed = true;
+    }
+  }
+  return missed;
+}
+
+}  // namespace kervan::runtime

@@ -1,0 +1,103 @@
+/// The one implementation of history, lifespan, deadline, max age and ownership: what an input port keeps of the samples
+/// that reached it. Times are on the composition's clock and always passed in. Not thread-safe: the component's thread.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "framework/component/qos.hpp"
+#include "framework/component/time.hpp"
+
+namespace kervan::dds {
+struct SampleBlock;
+}
+
+namespace kervan::runtime {
+
+/// A sample on its way into the cache. The reference to the block travels with it.
+struct StagedSample {
+  dds::SampleBlock* block;
+  unsigned writer;         ///< its index in the composition: the canonical order
+  std::uint64_t instance;  ///< equal for equal keys
+  std::int32_t strength;   ///< of the writer, for exclusive ownership
+  Time received;
+};
+
+/// What happened to the samples of one port so far.
+struct PortCounters {
+  std::uint64_t received = 0;
+  std::uint64_t handled = 0;          ///< given to the component
+  std::uint64_t overwritten = 0;      ///< pushed out by newer ones before the component took them
+  std::uint64_t expired = 0;          ///< past their lifespan before the component took them
+  std::uint64_t refused = 0;          ///< dropped because the component did not run and its inbox was full
+  std::uint64_t not_owner = 0;        ///< from a writer that did not own the instance
+  std::uint64_t deadline_missed = 0;  ///< periods of the deadline without a sample
+};
+
+class SampleCache {
+ public:
+  SampleCache(const QosProfile& profile, Duration max_age, bool keyed);
+  SampleCache(const SampleCache&) = delete;
+  SampleCache& operator=(const SampleCache&) = delete;
+  ~SampleCache();
+
+  /// Takes the samples over, in this order: ownership first, then history depth per instance.
+  void stage(const std::vector<StagedSample>& samples);
+
+  /// The oldest sample that was not yet given out and is not past its lifespan; nullptr if none is left. The caller gets
+  /// the reference.
+  dds::SampleBlock* take(Time now);
+  bool has_fresh() const { return live_fresh_ > 0; }
+
+  /// The newest live sample of any instance; nullptr if there is none or it is too old. Not retained for the caller.
+  dds::SampleBlock* latest(Time now) const;
+  /// When the newest sample was received, however old; false if there is none.
+  bool last_received(Time& at) const;
+  /// The newest live sample of each instance, in order of first appearance. Not retained for the caller.
+  std::vector<dds::SampleBlock*> instances(Time now) const;
+
+  void writer_gone(unsigned writer);
+
+  /// The earliest time at which an instance misses the deadline; Time::max() without one.
+  Time next_deadline() const;
+  /// Counts the deadlines missed at or before `now`; true if there was one.
+  bool check_deadlines(Time now);
+
+  const PortCounters& counters() const { return counters_; }
+  const QosProfile& profile() const { return profile_; }
+
+ private:
+  struct Instance {
+    std::uint64_t id;
+    dds::SampleBlock* newest = nullptr;  ///< nullptr once disposed
+    Time received{};
+    Time due = Time::max();
+    bool owned = false;
+    unsigned owner = 0;
+    std::int32_t strength = 0;
+    int fresh = 0;  ///< samples of it in fresh_
+  };
+  struct Fresh {
+    dds::SampleBlock* block = nullptr;  ///< nullptr once given out or overwritten
+    std::uint64_t instance = 0;
+    Time received{};
+  };
+
+  Instance& instance(std::uint64_t id);
+  bool owns(Instance& instance, const StagedSample& sample);
+  void drop_oldest_fresh(Instance& instance);
+  bool too_old(Time received, Time now) const;
+
+  QosProfile profile_;
+  Duration max_age_;
+  bool keyed_;
+  std::vector<Instance> instances_;
+  std::vector<Fresh> fresh_;  ///< those not yet given out, from next_fresh_ on
+  std::size_t next_fresh_ = 0;
+  std::size_t live_fresh_ = 0;  ///< blocks in fresh_
+  bool queued_ = false;         ///< somebody takes; a port that only looks at the newest loses nothing
+  std::size_t newest_ = 0;  ///< index of the instance that got the newest sample
+  PortCounters counters_;
+};
+
+}  // namespace kervan::runtime

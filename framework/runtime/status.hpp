@@ -1,0 +1,27 @@
+/// Publishes how each component is: kervan_msgs/msg/ComponentStatus on /kervan/status, keyed by component, latched.
+#pragma once
+
+#include <mutex>
+
+#include "framework/dds/endpoint.hpp"
+#include "framework/runtime/instance.hpp"
+
+namespace kervan::runtime {
+
+inline constexpr const char* kStatusTopic = "/kervan/status";
+
+class StatusWriter {
+ public:
+  explicit StatusWriter(dds::Domain& domain);
+
+  void publish(const ComponentInstance& instance, const std::string& container, Time now);
+
+ private:
+  std::mutex mutex_;
+  dds::Writer writer_;
+};
+
+/// The profile of the status topic; it names containers, so it stays out of the trace.
+QosProfile status_profile();
+
+}  // namespace kervan::runtime

@@ -1,0 +1,91 @@
+#include "sim/contact.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace kervan::sim {
+
+namespace {
+constexpr double skin = 1e-6;          // m; nothing comes nearer
+constexpr double released = 1e-3;      // m; a touch has ended when everything is farther
+constexpr double longest_move = 0.01;  // m; far less than any body is wide, so no obstacle is jumped over
+}  // namespace
+
+Body::Body(const Outline& outline, const Pose2& start, const World& world) : outline_(outline), pose_(start) {
+  if (!try_pose(start, world)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
+}
+
+/// No point of the body moves farther than this.
+double Body::length(const Motion& motion) const {
+  return std::abs(motion.distance) + outline_.circumradius() * std::abs(motion.turn);
+}
+
+bool Body::try_pose(const Pose2& pose, const World& world) {
+  const double clearance = world.clearance(outline_, pose).distance;
+  if (!(clearance > skin)) return false;
+  pose_ = pose;
+  room_ = clearance;
+  min_clearance_ = std::min(min_clearance_, clearance);
+  return true;
+}
+
+Moved Body::move(const Motion& wanted, const World& world) {
+  const double total = length(wanted);
+  if (total == 0.0) return {};
+
+  // Far from everything nothing needs to be looked at: neither can the body touch, nor come nearer than it ever was.
+  if (!touching_ && room_ - total > min_clearance_) {
+    pose_ = advance(pose_, wanted);
+    room_ -= total;
+    return {wanted};
+  }
+
+  const int moves = room_ - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
+  Motion part{wanted.distance / moves, wanted.turn / moves};
+  Moved all;
+  for (int i = 0; i < moves; ++i) {
+    const Moved now = move_shortly(part, world);
+    all.motion.distance += now.motion.distance;
+    all.motion.turn += now.motion.turn;
+    all.stopped_driving |= now.stopped_driving;
+    all.stopped_turning |= now.stopped_turning;
+    if (all.stopped_driving) part.distance = 0.0;
+    if (all.stopped_turning) part.turn = 0.0;
+  }
+  if (room_ > released) touching_ = false;
+  return all;
+}
+
+Moved Body::move_shortly(const Motion& wanted, const World& world) {
+  if (try_pose(advance(pose_, wanted), world)) return {wanted};
+
+  const double free = drive_up_to_obstacle(wanted, world);
+  if (!touching_) begin_contact(world);
+  const Motion driven{free * wanted.distance, free * wanted.turn};
+  const Motion rest{wanted.distance - driven.distance, wanted.turn - driven.turn};
+  if (wanted.distance != 0.0 && wanted.turn != 0.0) {
+    if (try_pose(advance(pose_, {0.0, rest.turn}), world)) return {{driven.distance, wanted.turn}, true, false};
+    if (try_pose(advance(pose_, {rest.distance, 0.0}), world)) return {{wanted.distance, driven.turn}, false, true};
+  }
+  return {driven, wanted.distance != 0.0, wanted.turn != 0.0};
+}
+
+double Body::drive_up_to_obstacle(const Motion& motion, const World& world) {
+  const Pose2 start = pose_;
+  const double total = length(motion);
+  double free = 0.0, blocked = 1.0;
+  while ((blocked - free) * total > skin) {
+    const double middle = 0.5 * (free + blocked);
+    (try_pose(advance(start, {middle * motion.distance, middle * motion.turn}), world) ? free : blocked) = middle;
+  }
+  return free;
+}
+
+void Body::begin_contact(const World& world) {
+  touching_ = true;
+  ++contacts_;
+  last_ = {world.clearance(outline_, pose_).on_obstacle, pose_};
+}
+
+}  // namespace kervan::sim

@@ -1,0 +1,66 @@
+/// A solid body among solid obstacles.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/drive.hpp"
+#include "sim/world.hpp"
+
+namespace kervan::sim {
+
+/// One touch, from the moment the body is stopped by an obstacle until it is free again.
+struct Contact {
+  Vector2 point = Vector2::Zero();  ///< in map, on the obstacle
+  Pose2 pose;                       ///< of the body in map when the touch began
+};
+
+/// What became of a movement.
+struct Moved {
+  Motion motion;                 ///< what was really done
+  bool stopped_driving = false;  ///< an obstacle cut the distance short
+  bool stopped_turning = false;  ///< an obstacle cut the turn short
+};
+
+/// Moves a body so that it never enters an obstacle. It is always more than a micrometre from all of them, so it can
+/// neither stick to a wall nor be pushed through one, however thin the wall and however long the step.
+class Body {
+ public:
+  /// Throws std::invalid_argument if there is no room for the body at `start`.
+  Body(const Outline& outline, const Pose2& start, const World& world);
+
+  /// Moves along the arc as far as the obstacles allow. On contact the translation stops and the body only turns on; if
+  /// an obstacle stops the turning but not the translation, as it does when the tail touches a wall, it drives straight
+  /// on.
+  Moved move(const Motion& wanted, const World& world);
+
+  const Pose2& pose() const { return pose_; }
+  const Outline& outline() const { return outline_; }
+
+  /// True from the moment an obstacle stops a movement until the body is a millimetre away from all of them.
+  bool touching() const { return touching_; }
+  std::uint64_t contacts() const { return contacts_; }   ///< touches begun so far
+  const Contact& last_contact() const { return last_; }  ///< meaningful once contacts() > 0
+
+  /// The smallest clearance after any movement so far, m.
+  double min_clearance() const { return min_clearance_; }
+
+ private:
+  /// Takes the pose if it is free.
+  bool try_pose(const Pose2& pose, const World& world);
+  /// The part of a blocked arc, in [0, 1), that is free; takes the pose there.
+  double drive_up_to_obstacle(const Motion& motion, const World& world);
+  /// One movement that is short enough not to jump over anything.
+  Moved move_shortly(const Motion& wanted, const World& world);
+  void begin_contact(const World& world);
+  double length(const Motion& motion) const;
+
+  Outline outline_;
+  Pose2 pose_;
+  double room_ = 0.0;  // no more than the clearance is now; exact after a look at the world
+  double min_clearance_ = infinity;
+  bool touching_ = false;
+  std::uint64_t contacts_ = 0;
+  Contact last_;
+};
+
+}  // namespace kervan::sim

@@ -1,0 +1,40 @@
+#include "sim/files/ranges.hpp"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string>
+
+namespace kervan::sim {
+
+namespace {
+std::string text_of(double number) {
+  std::array<char, 32> buffer{};
+  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed);
+  return {buffer.data(), end};
+}
+}  // namespace
+
+double positive(const config::Node& node, std::string_view unit, double highest) {
+  const double value = node.as_quantity(unit);
+  if (!(value > 0.0 && value <= highest))
+    node.fail(node.shown() + " is out of range; allowed: above 0, at most " + text_of(highest) + " " + std::string(unit));
+  return value;
+}
+
+Vector2 point_within(const config::Node& node, double limit) {
+  const Vector2 point = node.as_point();
+  for (int i = 0; i < 2; ++i) {
+    const config::Node& coordinate = node.children[static_cast<std::size_t>(i)];
+    if (std::abs(point[i]) > limit)
+      coordinate.fail(coordinate.shown() + " is out of range; allowed: -" + text_of(limit) + " .. " + text_of(limit) + " m");
+  }
+  return point;
+}
+
+void require_version_1(const config::Node& file, std::string_view key) {
+  const config::Node& version = file.required(key);
+  if (version.as_integer() != 1) version.fail(version.shown() + " is not a known version of this format; allowed: 1");
+}
+
+}  // namespace kervan::sim

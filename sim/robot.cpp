@@ -1,0 +1,65 @@
+#include "sim/robot.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace kervan::sim {
+
+namespace {
+
+RobotSetup valid(RobotSetup setup) {
+  require_valid(setup.model);
+  if (setup.sonar_period <= Duration::zero() || setup.odometry_period <= Duration::zero())
+    throw std::invalid_argument("robot " + setup.name + ": the periods of its sensors must be positive");
+  if (!(setup.odometry_error >= 0.0 && setup.odometry_error < 1.0))
+    throw std::invalid_argument("robot " + setup.name + ": the odometry error must be in [0, 1)");
+  return setup;
+}
+
+Body placed(const RobotSetup& setup, const World& world) {
+  try {
+    return Body(setup.model.outline, setup.start, world);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument("robot " + setup.name + " starts in or against an obstacle");
+  }
+}
+
+/// True if a multiple of `period` lies in (before, now].
+bool due(Duration period, Duration before, Duration now) { return now / period > before / period; }
+
+}  // namespace
+
+Robot::Robot(RobotSetup setup, std::uint64_t seed, const World& world)
+    : setup_(valid(std::move(setup))),
+      random_(seed, setup_.name),
+      drive_(setup_.model.drive),
+      body_(placed(setup_, world)),
+      odometry_(setup_.start, setup_.odometry_error, random_),
+      sonars_(setup_.model.sonars, setup_.sonar) {
+  sonar_scan_.ranges.resize(sonars_.size());
+  measure_sonar(world, Duration::zero());
+  measure_odometry(Duration::zero());
+}
+
+void Robot::step(const World& world, Duration now, Duration dt) {
+  const Moved moved = body_.move(drive_.step(now, dt), world);
+  if (moved.stopped_driving) drive_.stop_driving();
+  if (moved.stopped_turning) drive_.stop_turning();
+  odometry_.add(moved.motion);
+
+  const Duration after = now + dt;
+  if (due(setup_.odometry_period, now, after)) measure_odometry(after);
+  if (due(setup_.sonar_period, now, after)) measure_sonar(world, after);
+}
+
+void Robot::measure_sonar(const World& world, Duration now) {
+  sonar_scan_.stamp = now;
+  const auto scan = static_cast<std::uint64_t>(now / setup_.sonar_period);
+  sonars_.measure(world, body_.pose(), random_, scan, sonar_scan_.ranges);
+}
+
+void Robot::measure_odometry(Duration now) {
+  odometry_reading_ = {now, odometry_.pose(), odometry_.measured(drive_.speed())};
+}
+
+}  // namespace kervan::sim

@@ -1,0 +1,80 @@
+/// One simulated robot: its drive, its body and its sensors.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sim/contact.hpp"
+#include "sim/drive.hpp"
+#include "sim/odometry.hpp"
+#include "sim/random.hpp"
+#include "sim/robot_model.hpp"
+#include "sim/sonar.hpp"
+#include "sim/world.hpp"
+
+namespace kervan::sim {
+
+/// A robot as an experiment wants it.
+struct RobotSetup {
+  std::string name;
+  RobotModel model;
+  Pose2 start;  ///< of base_link in map
+  SonarSettings sonar = {};
+  double odometry_error = 0.0;  ///< bound of the scale errors, per metre and per radian
+  Duration sonar_period = std::chrono::milliseconds(100);
+  Duration odometry_period = std::chrono::milliseconds(50);
+};
+
+/// One round of all sonars; see Sonars::measure for the ranges.
+struct SonarScan {
+  Duration stamp{0};
+  std::vector<double> ranges;
+};
+
+/// What the robot believes of its own motion.
+struct OdometryReading {
+  Duration stamp{0};
+  Pose2 pose;   ///< of base_link in odom
+  Twist2 twist;  ///< of base_link
+};
+
+class Robot {
+ public:
+  /// Measures once, at time 0. Throws std::invalid_argument, naming the robot, if the model or a setting cannot be or
+  /// there is no room for it at its start.
+  Robot(RobotSetup setup, std::uint64_t seed, const World& world);
+
+  void command(const Twist2& wanted, Duration now) { drive_.command(wanted, now); }
+
+  /// Drives from `now` to `now + dt`, then measures with those sensors that are due.
+  void step(const World& world, Duration now, Duration dt);
+
+  const RobotSetup& setup() const { return setup_; }
+  const std::string& name() const { return setup_.name; }
+
+  /// The truth, which no robot knows: pose of base_link in map, and its speed.
+  const Pose2& pose() const { return body_.pose(); }
+  const Twist2& speed() const { return drive_.speed(); }
+  const Body& body() const { return body_; }
+  const DifferentialDrive& drive() const { return drive_; }
+
+  /// The latest measurements.
+  const SonarScan& sonar() const { return sonar_scan_; }
+  const OdometryReading& odometry() const { return odometry_reading_; }
+
+ private:
+  void measure_sonar(const World& world, Duration now);
+  void measure_odometry(Duration now);
+
+  RobotSetup setup_;
+  RandomSource random_;
+  DifferentialDrive drive_;
+  Body body_;
+  Odometry odometry_;
+  Sonars sonars_;
+  SonarScan sonar_scan_;
+  OdometryReading odometry_reading_;
+};
+
+}  // namespace kervan::sim

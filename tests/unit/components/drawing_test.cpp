@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+
+#include "components/observe/decimal.hpp"
+#include "components/observe/map_drawing.hpp"
+#include "components/observe/svg_writer.hpp"
+#include "components/observe/trajectory_csv.hpp"
+
+namespace kervan::observe {
+namespace {
+
+using geometry::Vector2;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+MapDrawing small_run() {
+  MapDrawing drawing;
+  drawing.title = "lab";
+  drawing.result = "failed";
+  drawing.world.walls = {{{-1.5, -1.5}, {32.0, -1.5}}, {{32.0, -1.5}, {32.0, 17.5}}};
+  drawing.world.circles = {{{8.2, 6.59}, 0.3}};
+  drawing.nodes = {{0.0, 0.0}, {4.0, 3.0}, {20.0, 3.0}};
+  DrawnRobot robot;
+  robot.name = "r1";
+  robot.route = {{0.0, 0.0}, {4.0, 3.0}};
+  robot.truth = {{0.0, 0.0}, {2.0, 1.6}, {3.8, 3.0}};
+  robot.odometry = {{0.0, 0.0}, {3.9, 3.0}};
+  robot.goal = Vector2(4.0, 3.0);
+  robot.closest = Vector2(3.8, 3.0);
+  robot.figures = {{"error", "0.200 m"}};
+  drawing.robots = {robot};
+  return drawing;
+}
+
+TEST(MapDrawing, HasAViewBoxInMetresAroundTheWorld) {
+  const std::string svg = to_svg(small_run());
+  double x = 0, y = 0, width = 0, height = 0;
+  const auto at = svg.find("viewBox=\"");
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_EQ(std::sscanf(svg.c_str() + at, "viewBox=\"%lf %lf %lf %lf\"", &x, &y, &width, &height), 4);
+  EXPECT_LT(x, -1.5);
+  EXPECT_LT(y, -17.5);
+  EXPECT_GT(x + width, 32.0);
+  EXPECT_GT(y + height, 1.5);
+  EXPECT_LT(width, 40.0);
+}
+
+TEST(MapDrawing, TurnsYAroundSoThatLeftIsUp) {
+  EXPECT_TRUE(has(to_svg(small_run()), "M32.0000,1.5000 L32.0000,-17.5000"));
+}
+
+TEST(MapDrawing, ShowsTheResultTheFiguresAndTheWaypointsNumbers) {
+  const std::string svg = to_svg(small_run());
+  EXPECT_TRUE(has(svg, ">lab</tspan>"));
+  EXPECT_TRUE(has(svg, ">failed</tspan>"));
+  EXPECT_TRUE(has(svg, ">did not reach the goal</tspan>"));
+  EXPECT_TRUE(has(svg, ">0.200 m</text>"));
+  for (const char* number : {">0</text>", ">1</text>", ">2</text>"}) EXPECT_TRUE(has(svg, number)) << number;
+  EXPECT_TRUE(has(svg, ">goal of r1</text>"));
+}
+
+TEST(MapDrawing, EscapesWhatPeopleWrite) {
+  MapDrawing drawing = small_run();
+  drawing.title = "a<b & \"c\"";
+  EXPECT_TRUE(has(to_svg(drawing), "a&lt;b &amp; &quot;c&quot;"));
+}
+
+TEST(MapDrawing, NeverWritesANumberThatIsNotFinite) {
+  MapDrawing drawing = small_run();
+  drawing.robots[0].truth.insert(drawing.robots[0].truth.begin() + 1, Vector2(nan, nan));
+  drawing.robots[0].contacts.emplace_back(nan, 0.0);
+  drawing.robots[0].closest = Vector2(nan, nan);
+  drawing.world.circles.push_back({{nan, nan}, 1.0});
+  const std::string svg = to_svg(drawing);
+  EXPECT_FALSE(has(svg, "nan"));
+  EXPECT_FALSE(has(svg, "inf"));
+  EXPECT_FALSE(has(svg, "=\",")) << "an empty number";
+}
+
+TEST(MapDrawing, IsAValidPictureOfNothing) {
+  const std::string svg = to_svg({});
+  EXPECT_TRUE(has(svg, "<svg "));
+  EXPECT_TRUE(has(svg, "</svg>"));
+  EXPECT_FALSE(has(svg, "inf"));
+}
+
+TEST(MapDrawing, IsTheSameForTheSameRun) { EXPECT_EQ(to_svg(small_run()), to_svg(small_run())); }
+
+TEST(Simplified, KeepsCornersAndDropsWhatLiesOnALine) {
+  const Polyline line{{0, 0}, {1, 0.001}, {2, 0}, {2, 1}, {2, 2}};
+  EXPECT_EQ(simplified(line, 0.01), (Polyline{{0, 0}, {2, 0}, {2, 2}}));
+}
+
+TEST(Simplified, MovesNoPointFartherThanTheTolerance) {
+  Polyline circle;
+  for (int i = 0; i <= 1000; ++i) circle.emplace_back(std::cos(0.00628 * i), std::sin(0.00628 * i));
+  const Polyline few = simplified(circle, 0.01);
+  EXPECT_LT(few.size(), 40u);
+  for (std::size_t i = 1; i < few.size(); ++i)
+    EXPECT_GE(((few[i - 1] + few[i]) / 2.0).norm(), 1.0 - 0.0101) << "a chord's middle is farthest from the circle";
+}
+
+TEST(Simplified, KeepsARobotThatStandsStillOrReturns) {
+  EXPECT_EQ(simplified(Polyline(100, Vector2(1, 1)), 0.01).size(), 2u);
+  EXPECT_EQ(simplified({{0, 0}, {5, 0}, {0, 0}}, 0.01).size(), 3u);
+  EXPECT_TRUE(simplified({}, 0.01).empty());
+}
+
+TEST(TrajectoryCsv, WritesOneRowARobotAndInstant) {
+  const TrajectoryRow row{1.25, "r1", {1.0, -2.5, 0.5}, geometry::Pose2{1.01, -2.49, 0.51}, {0.5, -0.1}};
+  EXPECT_EQ(to_csv(row), "1.250,r1,1.0000,-2.5000,0.50000,1.0100,-2.4900,0.51000,0.5000,-0.10000");
+}
+
+TEST(TrajectoryCsv, LeavesUnknownFieldsEmpty) {
+  const TrajectoryRow row{0.0, "r1", {0.0, nan, 0.0}, std::nullopt, {-0.00001, 0.0}};
+  EXPECT_EQ(to_csv(row), "0.000,r1,0.0000,,0.00000,,,,0.0000,0.00000");
+}
+
+TEST(TrajectoryCsv, HasAsManyColumnsAsItsHeader) {
+  const auto commas = [](std::string_view text) { return std::count(text.begin(), text.end(), ','); };
+  EXPECT_EQ(commas(to_csv({})), commas(trajectory_header));
+}
+
+TEST(Decimal, IsFixedAndHasNoNegativeZero) {
+  EXPECT_EQ(decimal(-0.0004, 3), "0.000");
+  EXPECT_EQ(decimal(-0.0006, 3), "-0.001");
+  EXPECT_EQ(decimal(1234.5, 0), "1234");
+  EXPECT_EQ(decimal(1e300, 2), "");
+}
+
+}  // namespace
+}  // namespace kervan::observe

@@ -1,0 +1,81 @@
+#include "components/control/route_follower.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace kervan::control {
+namespace {
+
+using geometry::Vector2;
+
+RouteFollower on_route(std::vector<Vector2> route) {
+  RouteFollower follower({});
+  follower.start(std::move(route));
+  return follower;
+}
+
+TEST(RouteFollower, HasNothingToDoWithoutARoute) {
+  RouteFollower follower({});
+  EXPECT_FALSE(follower.waypoint());
+  EXPECT_FALSE(follower.advance({0, 0}));
+  EXPECT_FALSE(follower.arrived());
+}
+
+TEST(RouteFollower, PassesAnIntermediateWaypointAtHalfAMetre) {
+  auto follower = on_route({{2, 0}, {4, 0}});
+  EXPECT_FALSE(follower.advance({1.49, 0}));
+  EXPECT_EQ(follower.waypoint(), Vector2(2, 0));
+  EXPECT_TRUE(follower.advance({1.5, 0}));
+  EXPECT_EQ(follower.waypoint(), Vector2(4, 0));
+  EXPECT_EQ(follower.index(), 1u);
+}
+
+TEST(RouteFollower, ReachesTheLastWaypointAtThreeCentimetresOnly) {
+  auto follower = on_route({{4, 0}});
+  EXPECT_FALSE(follower.advance({3.96, 0}));
+  EXPECT_TRUE(follower.advance({3.975, 0}));
+  EXPECT_TRUE(follower.arrived());
+  EXPECT_EQ(follower.waypoint(), Vector2(4, 0));
+}
+
+TEST(RouteFollower, PassesSeveralWaypointsThatLieClose) {
+  auto follower = on_route({{0, 0}, {0.3, 0}, {0.4, 0.2}, {5, 0}});
+  EXPECT_TRUE(follower.advance({0, 0}));
+  EXPECT_EQ(follower.index(), 3u);
+}
+
+TEST(RouteFollower, NeverGoesBackToAPassedWaypoint) {
+  auto follower = on_route({{0, 0}, {2, 0}, {4, 0}});
+  follower.advance({0, 0});
+  follower.advance({2, 0});
+  EXPECT_EQ(follower.index(), 2u);
+  follower.advance({0, 0});
+  EXPECT_EQ(follower.index(), 2u);
+}
+
+TEST(RouteFollower, StaysArrivedWhenTheRobotDriftsAway) {
+  auto follower = on_route({{4, 0}});
+  follower.advance({4, 0});
+  EXPECT_FALSE(follower.advance({3, 0}));
+  EXPECT_TRUE(follower.arrived());
+}
+
+TEST(RouteFollower, StartsAnewOnANewRoute) {
+  auto follower = on_route({{4, 0}});
+  follower.advance({4, 0});
+  follower.start({{1, 0}, {2, 0}});
+  EXPECT_FALSE(follower.arrived());
+  EXPECT_EQ(follower.waypoint(), Vector2(1, 0));
+  follower.start({});
+  EXPECT_FALSE(follower.waypoint());
+}
+
+TEST(RouteFollower, PassesNothingFromAPositionThatIsNotFinite) {
+  auto follower = on_route({{0, 0}, {4, 0}});
+  EXPECT_FALSE(follower.advance({std::numeric_limits<double>::quiet_NaN(), 0}));
+  EXPECT_EQ(follower.index(), 0u);
+}
+
+}  // namespace
+}  // namespace kervan::control

@@ -1,0 +1,130 @@
+#include <gtest/gtest.h>
+
+#include "sim/files/robot_file.hpp"
+#include "sim/files/world_file.hpp"
+#include "tests/unit/config/refused.hpp"
+#include "tests/unit/sim/p3dx.hpp"
+
+namespace kervan::sim {
+namespace {
+
+using test::refused;
+
+TEST(WorldFile, TheLabIsThePapersLaboratory) {
+  const World world = load_world(KERVAN_SIM_FOLDER "/worlds/lab.yaml");
+  EXPECT_EQ(world.name(), "lab");
+  ASSERT_EQ(world.segments().size(), 5u);
+  EXPECT_EQ(world.segments()[4].a, Vector2(16.40, 7.30));
+  EXPECT_EQ(world.segments()[4].b, Vector2(16.40, 9.30));
+  ASSERT_EQ(world.circles().size(), 1u);
+  EXPECT_EQ(world.circles()[0].center, Vector2(8.20, 6.59));
+  EXPECT_EQ(world.circles()[0].radius, 0.30);
+  // The outer walls close: from inside, every direction ends at one.
+  for (int i = 0; i < 360; ++i) {
+    const auto hit = world.cast({{20.0, 12.0}, geometry::heading(i * pi / 180.0)});
+    ASSERT_TRUE(hit) << i << " degrees";
+  }
+  EXPECT_NEAR(world.cast({{0.0, 0.0}, {0.0, -1.0}})->distance, 1.5, 1e-12);
+  EXPECT_NEAR(world.cast({{20.0, 12.0}, {1.0, 0.0}})->distance, 12.0, 1e-12);
+  EXPECT_NEAR(world.cast({{20.0, 12.0}, {0.0, 1.0}})->distance, 5.5, 1e-12);
+}
+
+TEST(WorldFile, BoxesMayBeTurned) {
+  const World world = parse_world(
+      "kervan_world: 1\n"
+      "name: box\n"
+      "boxes:\n"
+      "  - {center: [3 m, 0 m], size: [200 cm, 1 m], yaw: 90 deg}\n",
+      "box.yaml");
+  ASSERT_EQ(world.boxes().size(), 1u);
+  EXPECT_NEAR(world.cast({{0.0, 0.0}, {1.0, 0.0}})->distance, 2.5, 1e-12);
+  EXPECT_TRUE(world.segments().empty());
+}
+
+std::string world_refusal(const std::string& lines) {
+  return refused([&] { parse_world("kervan_world: 1\nname: w\n" + lines, "w.yaml"); });
+}
+
+TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
+  EXPECT_EQ(world_refusal("walls: []\n"),
+            "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes");
+  EXPECT_EQ(world_refusal("circle: []\n"),
+            "w.yaml:3:1: unknown key 'circle'; did you mean 'circles'? allowed: kervan_world, name, segments, circles, boxes");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m]}\n"), "w.yaml:4:5: circles[0]: the key 'radius' is missing");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: -0.3 m}\n"),
+            "w.yaml:4:34: radius: -0.3 m is out of range; allowed: above 0, at most 1000000 m");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: 0 m}\n"),
+            "w.yaml:4:34: radius: 0 m is out of range; allowed: above 0, at most 1000000 m");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [.nan m, 2 m], radius: 1 m}\n"),
+            "w.yaml:4:15: center[0]: '.nan m' is not a length; write a number and a unit, e.g. 1 m");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: 0.3 kg}\n"),
+            "w.yaml:4:34: radius: 0.3 kg is not a length; allowed units: m, cm, mm, km");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: 0.3}\n"),
+            "w.yaml:4:34: radius: 0.3 has no unit; write e.g. 0.3 m");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: 1 m, radius: 2 m}\n"),
+            "w.yaml:4:39: duplicate key 'radius'; it was first given at line 4");
+  EXPECT_EQ(world_refusal("segments:\n  - [[1 m, 2 m], [1 m, 2 m]]\n"),
+            "w.yaml:4:5: segments[0]: both ends of the segment are the same point; a segment needs a length");
+  EXPECT_EQ(world_refusal("segments:\n  - [[1 m, 2 m], [1 m, 2 m], [3 m, 4 m]]\n"),
+            "w.yaml:4:5: segments[0]: expected the two ends of a segment [[x m, y m], [x m, y m]], found a list of 3");
+  EXPECT_EQ(world_refusal("segments:\n  - [[1 m, 2 m], [1 m, 2e6 m]]\n"),
+            "w.yaml:4:24: segments[0][1][1]: 2e6 m is out of range; allowed: -1000000 .. 1000000 m");
+  EXPECT_EQ(world_refusal("segments: 3\n"), "w.yaml:3:11: segments: expected a list, found 3");
+  EXPECT_EQ(world_refusal("boxes:\n  - {center: [1 m, 2 m], size: [1 m, 0 m]}\n"),
+            "w.yaml:4:38: size[1]: 0 m is out of range; allowed: above 0, at most 1000000 m");
+  EXPECT_EQ(world_refusal("boxes:\n  - {center: [1 m, 2 m], size: [1 m, 1 m], yaw: 1 m}\n"),
+            "w.yaml:4:49: yaw: 1 m is not an angle; allowed units: rad, deg");
+  EXPECT_EQ(refused([] { parse_world("name: w\n", "w.yaml"); }), "w.yaml:1:1: the key 'kervan_world' is missing");
+  EXPECT_EQ(refused([] { parse_world("kervan_world: 2\nname: w\n", "w.yaml"); }),
+            "w.yaml:1:15: kervan_world: 2 is not a known version of this format; allowed: 1");
+  EXPECT_EQ(refused([] { load_world("no/such/world.yaml"); }),
+            "no/such/world.yaml: cannot read the file: No such file or directory");
+}
+
+TEST(RobotFile, TheP3DxIsThatOfItsTable) {
+  EXPECT_EQ(p3dx().name, "p3dx");
+  EXPECT_EQ(p3dx().drive.speed, 1.0);
+  EXPECT_EQ(p3dx().drive.turn_rate, 1.74);
+  EXPECT_EQ(p3dx().drive.acceleration, 0.3);
+  EXPECT_EQ(p3dx().drive.deceleration, 0.6);
+  EXPECT_EQ(p3dx().drive.angular_acceleration, 1.74);
+  EXPECT_NEAR(p3dx().outline.circumradius(), 0.32, 0.001);
+  double front = 0.0, rear = 0.0, left = 0.0;
+  for (const Vector2& corner : p3dx().outline.corners()) {
+    front = std::max(front, corner.x());
+    rear = std::min(rear, corner.x());
+    left = std::max(left, corner.y());
+  }
+  EXPECT_EQ(front, 0.211);
+  EXPECT_EQ(rear, -0.300);
+  EXPECT_EQ(left, 0.200);
+}
+
+constexpr const char* smallest_robot =
+    "kervan_robot: 1\n"
+    "name: r\n"
+    "outline: [[1 m, 0 m], [-1 m, 1 m], [-1 m, -1 m]]\n"
+    "drive: {type: differential, speed: 1 m/s, turn_rate: 1 rad/s, acceleration: 1 m/s2, deceleration: 1 m/s2, "
+    "angular_acceleration: 1 rad/s2}\n";
+
+std::string robot_refusal(const std::string& from, const std::string& to) {
+  std::string text = smallest_robot;
+  text.replace(text.find(from), from.size(), to);
+  return refused([&] { parse_robot_model(text, "r.yaml"); });
+}
+
+TEST(RobotFile, ARobotMayHaveNoSonars) { EXPECT_TRUE(parse_robot_model(smallest_robot, "r.yaml").sonars.poses.empty()); }
+
+TEST(RobotFile, EveryMistakeIsNamedAtItsPlace) {
+  EXPECT_EQ(robot_refusal("[-1 m, 1 m], [-1 m, -1 m]", "[-1 m, -1 m], [-1 m, 1 m]"),
+            "r.yaml:3:10: outline: the corners of an outline must be convex and counter-clockwise");
+  EXPECT_EQ(robot_refusal("differential", "synchro"), "r.yaml:4:15: type: synchro is not one of differential");
+  EXPECT_EQ(robot_refusal("speed: 1 m/s", "speed: 0 m/s"),
+            "r.yaml:4:36: speed: 0 m/s is out of range; allowed: above 0, at most 100 m/s");
+  EXPECT_EQ(robot_refusal("speed: 1 m/s, ", ""), "r.yaml:4:8: drive: the key 'speed' is missing");
+  EXPECT_EQ(robot_refusal("name: r", "name: r\nsonars: {min_range: 2 m, max_range: 1 m, field_of_view: 1 rad, poses: []}"),
+            "r.yaml:3:21: min_range: 2 m is out of range; allowed: above 0, at most 1 m");
+}
+
+}  // namespace
+}  // namespace kervan::sim
