@@ -116,11 +116,11 @@ function(kervan_idl package)
     install(TARGETS ${target} EXPORT ${arg_EXPORT}
       LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
       FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kervan)
-    foreach(file IN LISTS arg_FILES)
-      cmake_path(ABSOLUTE_PATH file NORMALIZE OUTPUT_VARIABLE path)
-      cmake_path(RELATIVE_PATH path BASE_DIRECTORY "${arg_BASE_DIR}" OUTPUT_VARIABLE relative)
-      cmake_path(GET relative PARENT_PATH folder)
-      install(FILES "${path}" DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan/idl/${folder})
+    # idlc's C headers are for packages that include this one's IDL; nobody else needs them.
+    foreach(name IN LISTS type_names)
+      cmake_path(GET name PARENT_PATH folder)
+      install(FILES "${output_dir}/${name}.h" DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/kervan/${folder})
+      install(FILES "${arg_BASE_DIR}/${name}.idl" DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan/idl/${folder})
     endforeach()
   endif()
 endfunction()

@@ -1,5 +1,5 @@
-# cmake -DFILE=<file.idl> -DIDLC=<idlc> -DGENERATOR=<back end> -DOPTIONS=<list> -DOUTPUT_DIR=<dir> -DOUTPUT=<dir/pkg/msg/Name>
-#       -P KervanIdlCompile.cmake
+# cmake -DFILE=<file.idl> -DIDLC=<idlc> -DGENERATOR=<back end> -DOPTIONS=<list of idlc's>
+#       -DOUTPUT_DIR=<dir> -DOUTPUT=<dir>/<pkg>/msg/<Name> -P KervanIdlCompile.cmake
 #
 # Compiles one IDL file: our back end first, because it refuses what idlc's own would turn into code that does not
 # compile; then idlc's own, for the descriptor. idlc says some things badly or not at all, which is put right here:

@@ -17,7 +17,9 @@ class Odometry {
   }
 
   /// Adds what the wheels really did.
-  void add(const Motion& motion) { pose_ = advance(pose_, {distance_scale_ * motion.distance, turn_scale_ * motion.turn}); }
+  void add(const Motion& motion) {
+    pose_ = advance(pose_, {distance_scale_ * motion.distance, turn_scale_ * motion.turn});
+  }
 
   /// Pose of base_link in odom.
   const Pose2& pose() const { return pose_; }

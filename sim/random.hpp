@@ -23,9 +23,9 @@ class RandomSource {
   /// A sequence of independent numbers for one use of one part (sonar number 3) at one tick.
   class Sequence {
    public:
-    double uniform();                          ///< in [0, 1), a multiple of 2^-53
-    double uniform(double low, double high);   ///< in [low, high)
-    double gaussian();                         ///< mean 0, standard deviation 1 (Box and Muller 1958)
+    double uniform();                         ///< in [0, 1), a multiple of 2^-53
+    double uniform(double low, double high);  ///< in [low, high)
+    double gaussian();                        ///< mean 0, standard deviation 1 (Box and Muller 1958)
 
    private:
     friend class RandomSource;

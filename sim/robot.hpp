@@ -35,7 +35,7 @@ struct SonarScan {
 /// What the robot believes of its own motion.
 struct OdometryReading {
   Duration stamp{0};
-  Pose2 pose;   ///< of base_link in odom
+  Pose2 pose;    ///< of base_link in odom
   Twist2 twist;  ///< of base_link
 };
 

@@ -11,13 +11,15 @@ void require_valid(const RobotModel& model) {
     if (!holds) throw std::invalid_argument("robot model " + model.name + ": " + what);
   };
   const DriveLimits& drive = model.drive;
-  for (const double limit : {drive.speed, drive.turn_rate, drive.acceleration, drive.deceleration, drive.angular_acceleration})
+  for (const double limit :
+       {drive.speed, drive.turn_rate, drive.acceleration, drive.deceleration, drive.angular_acceleration})
     require(limit > 0.0 && std::isfinite(limit), "every limit of the drive must be a positive number");
   const SonarRing& sonars = model.sonars;
   if (sonars.poses.empty()) return;
   require(sonars.min_range >= 0.0 && sonars.min_range < sonars.max_range && std::isfinite(sonars.max_range),
           "the sonars need 0 <= min_range < max_range");
-  require(sonars.field_of_view > 0.0 && sonars.field_of_view <= std::numbers::pi, "the sonars' field of view must be in (0, pi]");
+  require(sonars.field_of_view > 0.0 && sonars.field_of_view <= std::numbers::pi,
+          "the sonars' field of view must be in (0, pi]");
 }
 
 }  // namespace kervan::sim

@@ -64,7 +64,8 @@ ShapeGrid::ShapeGrid(std::span<const Segment> segments, std::span<const Circle> 
         for (int column = column_of(b.low.x() - margin); column <= last_column; ++column) {
           const Vector2 center = low_ + cell_ * Vector2(column + 0.5, row + 0.5);
           if (reaches(shape, center, half))
-            entry(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column), id);
+            entry(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column),
+                  id);
         }
       ++id;
     };

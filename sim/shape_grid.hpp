@@ -33,7 +33,8 @@ class ShapeGrid {
 
  private:
   Ids ids(int column, int row) const {
-    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    const auto cell =
+        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     return {ids_.data() + begin_[cell], ids_.data() + begin_[cell + 1]};
   }
   int column_of(double x) const { return index_of((x - low_.x()) / cell_, columns_); }

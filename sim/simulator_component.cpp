@@ -50,13 +50,15 @@ struct RobotParams {
     v(odometry_period, "odometry_period", {.min = 0.001, .max = 10.0, .help = "Time between two odometry readings."});
     v(sonar_period, "sonar_period", {.min = 0.001, .max = 10.0, .help = "Time between two rounds of all sonars."});
     v(sonar_rays, "sonar_rays",
-      {.min = 1, .max = 1024, .help = "Rays in the cone of a sonar; 1 is the axis alone, as Stage and MobileSim have it."});
+      {.min = 1, .max = 1024, .help = "Rays in the cone of a sonar; 1 is its axis alone, as in Stage."});
     v(sonar_noise, "sonar_noise",
       {.min = 0.0, .max = 1.0, .help = "Standard deviation of a reading as a share of the distance."});
     v(sonar_drop_out, "sonar_drop_out", {.min = 0.0, .max = 1.0, .help = "Probability that an echo is not heard."});
     v(sonar_incidence_limit, "sonar_incidence_limit",
-      {.unit = "rad", .min = 0.0, .max = any_angle,
-       .help = "Surfaces met at a larger angle to their normal give no echo; 90 degrees: all do."});
+      {.unit = "rad",
+       .min = 0.0,
+       .max = any_angle,
+       .help = "Surfaces met more obliquely give no echo; 90 deg: all do."});
   }
 
   RobotSetup setup(const std::string& name) const {
@@ -159,11 +161,11 @@ class RobotPorts {
         cmd_vel_(owner, name + "/cmd_vel", qos::command.optional(),
                  "Speed wanted of " + name + "; it brakes 250 ms after the last one."),
         sonar_(owner, name + "/sonar", qos::sensor, "What the sonars of " + name + " measure; +inf without an echo."),
-        odom_(owner, name + "/odom", qos::sensor, "Pose and speed of " + name + " by its own wheels, from its start pose on."),
+        odom_(owner, name + "/odom", qos::sensor, "Pose and speed of " + name + " by its own wheels."),
         truth_(owner, name + "/truth", qos::state, "True pose in map and true speed of " + name + ", every step."),
         contact_(owner, name + "/contact", qos::event, "Each time " + name + " begins to touch something."),
         clearance_(owner, name + "/clearance", qos::state,
-                   "Least distance of the hull of " + name + " to any obstacle since the start, when it becomes less.") {}
+                   "Least distance of the hull of " + name + " to any obstacle so far.") {}
 
   /// Hands the drive what has been commanded since the last step.
   void steer(Simulation& simulation, std::size_t robot) {
@@ -262,20 +264,22 @@ class RobotPorts {
   bool last_refused_ = false;
 };
 
-/// Simulates robots in a world (simulation.hpp). The first tick publishes what the sensors see at the start; each later one
-/// moves the robots on to the present.
+/// Simulates robots in a world (simulation.hpp). The first tick publishes what the sensors see at the start; each later
+/// one moves the robots on to the present.
 class SimulatorComponent final : public Component {
   SimulatorParams params_ = parameters<SimulatorParams>();
   Simulation simulation_ = simulation();
   std::deque<RobotPorts> ports_ = ports();
   Output<rosgraph_msgs::msg::Clock> clock_{this, "/clock", qos::state, "Time of the simulation, every step."};
   Output<tf2_msgs::msg::TFMessage> tf_{this, "/tf", qos::event, "odom to base_link, and map to odom if asked for."};
-  Output<kervan_msgs::msg::Outline> outline_{this, "outline", qos::latched, "The true shape of the world, for drawing."};
+  Output<kervan_msgs::msg::Outline> outline_{this, "outline", qos::latched,
+                                             "The true shape of the world, for drawing."};
   Timer tick_{this, params_.step, &SimulatorComponent::on_tick};
   std::optional<Time> start_;  // of the simulated time: the first tick
 
   Simulation simulation() const {
-    const auto world = std::make_shared<const World>(load_world(params_.map.path));
+    // Without a map only the declarations are wanted (kervan describe).
+    const auto world = std::make_shared<const World>(params_.map.path.empty() ? World(Obstacles{}) : load_world(params_.map.path));
     std::vector<RobotSetup> setups;
     for (const auto& [name, robot] : params_.robots) {
       setups.push_back(robot.setup(name));
@@ -331,4 +335,5 @@ class SimulatorComponent final : public Component {
 }  // namespace
 }  // namespace kervan::sim
 
-KERVAN_COMPONENT(kervan::sim::SimulatorComponent, "sim/world", "Simulates robots, their sensors and the world around them.")
+KERVAN_COMPONENT(kervan::sim::SimulatorComponent, "sim/world",
+                 "Simulates robots, their sensors and the world around them.")

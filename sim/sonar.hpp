@@ -14,9 +14,9 @@ namespace kervan::sim {
 
 /// How far the simulated sonars are from perfect, and how finely they are simulated. All imperfections may be 0.
 struct SonarSettings {
-  int rays = 32;              ///< in a cone, at least 1; 1 is the centre ray alone, as Stage and MobileSim have it
-  double noise = 0.01;        ///< standard deviation as a share of the distance
-  double drop_out = 0.0;      ///< probability that an echo is not heard, in [0, 1]
+  int rays = 32;          ///< in a cone, at least 1; 1 is the centre ray alone, as Stage and MobileSim have it
+  double noise = 0.01;    ///< standard deviation as a share of the distance
+  double drop_out = 0.0;  ///< probability that an echo is not heard, in [0, 1]
   /// rad; echoes from surfaces met at a larger angle to their normal are lost. Nothing: surfaces answer at any angle.
   std::optional<double> incidence_limit = std::nullopt;
 };

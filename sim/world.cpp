@@ -18,7 +18,8 @@ Obstacles valid(Obstacles obstacles) {
     if (!c.center.allFinite() || !std::isfinite(c.radius) || c.radius <= 0.0)
       throw std::invalid_argument("a circle needs a finite centre and a positive radius");
   for (const Box& b : obstacles.boxes)
-    if (!b.pose.position().allFinite() || !std::isfinite(b.pose.yaw) || !b.size.allFinite() || !(b.size.minCoeff() > 0.0))
+    if (!b.pose.position().allFinite() || !std::isfinite(b.pose.yaw) || !b.size.allFinite() ||
+        !(b.size.minCoeff() > 0.0))
       throw std::invalid_argument("a box needs a finite pose and a positive size");
   return obstacles;
 }
@@ -62,8 +63,8 @@ std::optional<RayHit> World::cast(const Ray& ray, double range) const {
   std::uint32_t best_id = 0;
   grid_.walk(ray, range, [&](ShapeGrid::Ids ids, double exit) {
     for (const std::uint32_t id : ids) {
-      const double distance = id < segments_.size() ? hit_distance(ray, segments_[id])
-                                                    : hit_distance(ray, circles_[id - segments_.size()]);
+      const double distance =
+          id < segments_.size() ? hit_distance(ray, segments_[id]) : hit_distance(ray, circles_[id - segments_.size()]);
       if (distance < best) {
         best = distance;
         best_id = id;
@@ -80,7 +81,8 @@ std::optional<NearestObstacle> World::nearest(const Vector2& point, double range
   for (const Box& box : boxes_)
     if (contains(box, point)) return NearestObstacle{0.0, point};
   NearestObstacle best{infinity, point};
-  // Whatever lies outside of the box searched is farther than `reach`, so a find nearer than that is the nearest of all.
+  // Whatever lies outside of the box searched is farther than `reach`, so a find nearer than that is the nearest of
+  // all.
   for (double reach = grid_.cell_size();; reach *= 2.0) {
     Recent recent;
     const Vector2 extent = Vector2::Constant(std::min(reach, range));
@@ -121,7 +123,8 @@ Clearance World::clearance(const Outline& outline, const Pose2& pose) const {
       for (const std::uint32_t id : ids) {
         if (recent.has_or_add(id)) continue;
         const Clearance found = [&] {
-          if (id < segments_.size()) return outline.clearance(Segment{to_body(segments_[id].a), to_body(segments_[id].b)});
+          if (id < segments_.size())
+            return outline.clearance(Segment{to_body(segments_[id].a), to_body(segments_[id].b)});
           const Circle& circle = circles_[id - segments_.size()];
           return outline.clearance(Circle{to_body(circle.center), circle.radius});
         }();

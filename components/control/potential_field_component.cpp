@@ -1,3 +1,5 @@
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -51,14 +53,30 @@ class PotentialFieldComponent final : public Component {
   Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, &PotentialFieldComponent::on_waypoint,
                                                    "Where to drive, in the frame of the odometry."};
   Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor.max_age(500ms), "Where the robot is."};
-  Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(500ms), "Obstacles around the robot."};
+  Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(500ms),
+                                             &PotentialFieldComponent::on_sonar, "Obstacles around the robot."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command, "Speed wanted of base_link."};
   Output<kervan_msgs::msg::ForceField> force_{this, "force", qos::sensor, "The forces on the robot, for looking at."};
   Timer tick_{this, params_.period, &PotentialFieldComponent::on_tick};
   std::vector<SonarEcho> echoes_;
+  std::optional<geometry::Vector2> obstacle_;  // nearest, in the frame of the odometry
   bool arrived_ = false;
+  Time activated_{};
+
+  void on_activate(Time now) override { activated_ = now; }
 
   void on_waypoint(const geometry_msgs::msg::PoseStamped&, Time) { arrived_ = false; }
+
+  /// Keeps the obstacle where it was heard: by the next tick the robot will have moved on.
+  void on_sonar(const kervan_msgs::msg::SonarArray& sonar, Time) {
+    echoes_.clear();
+    for (const auto& reading : sonar.readings)
+      echoes_.push_back({{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
+                         static_cast<double>(reading.range)});
+    obstacle_ = nearest_echo(echoes_, static_cast<double>(sonar.max_range));
+    if (const auto* odometry = odom_.latest(); obstacle_ && odometry)
+      obstacle_ = components::pose_of(odometry->pose.pose) * *obstacle_;
+  }
 
   void on_tick(Time now) {
     for (const InputBase* input : {static_cast<InputBase*>(&waypoint_), static_cast<InputBase*>(&odom_),
@@ -71,9 +89,7 @@ class PotentialFieldComponent final : public Component {
     if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return stand(now, "odom: the pose is not finite");
     if (!goal.allFinite()) return stand(now, "waypoint: the position is not finite");
 
-    std::optional<geometry::Vector2> obstacle = nearest_obstacle(*sonar_.latest());
-    if (obstacle) obstacle = robot * *obstacle;
-    const Force force = force_at(params_.force, robot.position(), goal, obstacle);
+    const Force force = force_at(params_.force, robot.position(), goal, obstacle_);
     publish_force(now, odometry.header.frame_id, robot, force);
     arrived_ = arrived_ || force.rho_g <= params_.arrive_within;
     command(now, arrived_ ? geometry::Twist2{} : drive_along(params_.drive, force, robot.yaw));
@@ -82,17 +98,9 @@ class PotentialFieldComponent final : public Component {
 
   void on_deactivate(Time now) override { command(now, {}); }
 
-  std::optional<geometry::Vector2> nearest_obstacle(const kervan_msgs::msg::SonarArray& sonar) {
-    echoes_.clear();
-    for (const auto& reading : sonar.readings)
-      echoes_.push_back({{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
-                         static_cast<double>(reading.range)});
-    return nearest_echo(echoes_, static_cast<double>(sonar.max_range));
-  }
-
   void stand(Time now, std::string why) {
     command(now, {});
-    report_degraded(std::move(why));
+    if (now > activated_) report_degraded(std::move(why));  // At activation nobody can have published yet.
   }
 
   void command(Time now, const geometry::Twist2& twist) {

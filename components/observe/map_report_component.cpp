@@ -134,6 +134,7 @@ class MapReportComponent final : public Component {
   Timer tick_{this, params_.period, &MapReportComponent::on_tick};
   std::ofstream table_;
   Time started_{};
+  Time looked_{};
 
   std::deque<Subject> subjects() {
     std::deque<Subject> robots;
@@ -150,12 +151,13 @@ class MapReportComponent final : public Component {
   }
 
   void on_tick(Time now) {
+    looked_ = now;
     for (auto& robot : robots_) robot.look(seconds(now - started_), table_);
   }
 
   void on_shutdown(Time now) override {
     if (run_folder().empty()) return;
-    for (auto& robot : robots_) robot.look(seconds(now - started_), table_);
+    if (now > looked_) on_tick(now);
     table_.close();
     MapDrawing drawing;
     drawing.title = params_.title;
@@ -167,7 +169,7 @@ class MapReportComponent final : public Component {
                      : result->result == MissionOutcome::MISSION_FAILED  ? "failed"
                                                                           : "aborted";
     drawing.subtitle = "ended after " + decimal(seconds(now - started_), 1) + " s";
-    if (result && !result->reason.empty()) drawing.subtitle += ": " + result->reason;
+    if (result && !result->reason.empty()) drawing.subtitle += "; " + result->reason;
     for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));
     std::ofstream map(run_folder() / "map.svg");
     map << to_svg(drawing);

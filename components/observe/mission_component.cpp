@@ -15,6 +15,7 @@
 #include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
+#include "sensor_msgs/msg/Range.hpp"
 
 namespace kervan::observe {
 namespace {
@@ -55,6 +56,7 @@ class Contender {
         params_(params),
         truth_(owner, name + "/truth", qos::state, "True pose and speed of " + name + "."),
         contact_(owner, name + "/contact", qos::event, "Every touch of " + name + "."),
+        clearance_(owner, name + "/clearance", qos::state.optional(), "Distance of the hull of " + name + " to the world."),
         goal_(owner, name + "/goal", qos::latched, "Where " + name + " is to go.") {}
 
   void start(Time now) {
@@ -65,9 +67,9 @@ class Contender {
   void look(Time now) {
     const std::size_t goal = score_->figures().goal;
     for ([[maybe_unused]] const auto& contact : contact_.take()) score_->contact();
-    for (const auto& truth : truth_.take()) {
+    for (const auto& clearance : clearance_.take()) score_->clearance(static_cast<double>(clearance->range));
+    for (const auto& truth : truth_.take())
       score_->truth(now, components::pose_of(truth->pose.pose), components::twist_of(truth->twist.twist));
-    }
     score_->tick(now);
     if (score_->figures().goal != goal) publish_goal(now);
   }
@@ -102,6 +104,7 @@ class Contender {
   MissionParams params_;
   Input<nav_msgs::msg::Odometry> truth_;
   Input<kervan_msgs::msg::Contact> contact_;
+  Input<sensor_msgs::msg::Range> clearance_;
   Output<geometry_msgs::msg::PoseStamped> goal_;
   std::optional<MissionScore> score_;
 };
@@ -114,6 +117,7 @@ class MissionComponent final : public Component {
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "How the mission ended."};
   Timer tick_{this, params_.period, &MissionComponent::on_tick};
   bool judged_ = false;
+  Time activated_{};
 
   std::deque<Contender> contenders() {
     if (params_.goals.empty()) throw ParameterError("goals", "no robot has a goal");
@@ -128,6 +132,7 @@ class MissionComponent final : public Component {
   }
 
   void on_activate(Time now) override {
+    activated_ = now;
     for (auto& robot : robots_) robot.start(now);
   }
 
@@ -141,7 +146,10 @@ class MissionComponent final : public Component {
       reached = reached && robot.reached();
       if (missing.empty()) missing = robot.missing();
     }
-    missing.empty() ? report_active() : report_degraded(missing);
+    if (missing.empty())
+      report_active();
+    else if (now > activated_)  // At activation nobody can have published yet.
+      report_degraded(missing);
     if (!ended) return;
     publish_result(now, reached ? MissionOutcome::MISSION_SUCCESS : MissionOutcome::MISSION_FAILED, reason());
     finish(reached ? "every robot has reached its goal" : reason());

@@ -32,7 +32,7 @@ geometry::Twist2 DriveGuard::step(Time now) {
   const bool fresh = received_ && now + params_.period <= *received_ + params_.timeout;
   if (fresh)
     state_ = DriveState::following;
-  else if (received_)
+  else if (state_ == DriveState::following)
     state_ = DriveState::braking;
   const geometry::Twist2 target = fresh ? wanted_ : geometry::Twist2{};
   const double dt = seconds(params_.period);

@@ -36,6 +36,9 @@ class DriveGuard {
   /// (false), counted, and the age of the last good one runs on.
   bool command(Time received, const geometry::Twist2& wanted);
 
+  /// Whoever received the last command knows that it is too old, however young it looked when it was given here.
+  void forget() { received_.reset(); }
+
   /// What the drive shall do from `now` for one period. Full braking begins so early that no period in which the command
   /// turns too old is still driven: later than timeout - period and no later than timeout after the last command. From
   /// then on the speed falls at `deceleration`, the turning rate at `turn_acceleration`, both to zero.
@@ -47,7 +50,7 @@ class DriveGuard {
 
  private:
   DriveGuardParams params_;
-  std::optional<Time> received_;
+  std::optional<Time> received_;  // of the last good command, until it is forgotten
   geometry::Twist2 wanted_;
   geometry::Twist2 output_;
   DriveState state_ = DriveState::waiting;

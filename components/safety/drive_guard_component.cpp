@@ -28,12 +28,18 @@ struct DriveGuardComponentParams {
 class DriveGuardComponent final : public Component {
   DriveGuardComponentParams params_ = checked(parameters<DriveGuardComponentParams>());
   DriveGuard guard_{params_.guard};
-  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw", qos::command, &DriveGuardComponent::on_command,
-                                                  "Speed that the controller wants."};
+  // The port judges the age by when a command was received, the guard by when it was handled. They differ when this
+  // component was held up, and then the port is right.
+  Input<geometry_msgs::msg::TwistStamped> wanted_{
+      this, "cmd_vel_raw", qos::command.max_age(params_.guard.timeout - params_.guard.period),
+      &DriveGuardComponent::on_command, "Speed that the controller wants."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel", qos::command, "Speed for the drive."};
   Timer tick_{this, params_.guard.period, &DriveGuardComponent::on_tick};
   std::string frame_;
   bool last_refused_ = false;
+  Time activated_{};
+
+  void on_activate(Time now) override { activated_ = now; }
 
   static DriveGuardComponentParams checked(DriveGuardComponentParams params) {
     if (params.guard.timeout < params.guard.period)
@@ -47,12 +53,13 @@ class DriveGuardComponent final : public Component {
   }
 
   void on_tick(Time now) {
+    if (!wanted_.latest()) guard_.forget();
     publish(now, guard_.step(now));
     if (last_refused_)
       report_degraded("cmd_vel_raw: refused a command that is not finite");
     else if (guard_.state() == DriveState::following)
       report_active();
-    else
+    else if (now > activated_)  // At activation nobody can have published yet.
       report_degraded(guard_.state() == DriveState::waiting ? "cmd_vel_raw: nothing received yet"
                                                             : "cmd_vel_raw: no fresh command, braking");
   }

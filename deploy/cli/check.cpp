@@ -57,8 +57,12 @@ ordered_json report(const ResolvedComposition& composition) {
         {{"name", component.name}, {"type", component.manifest.type}, {"container", component.container}});
   for (const auto& [name, topic] : composition.topics) object["topics"].push_back(topic_json(composition, topic));
   for (const auto& pair : composition.pairs)
-    object["pairs"].push_back({{"topic", pair.topic},     {"type", pair.type},       {"writer", pair.writer},
-                               {"reader", pair.reader},   {"profile", pair.profile}, {"verdict", pair.verdict}});
+    object["pairs"].push_back({{"topic", pair.topic},
+                               {"type", pair.type},
+                               {"writer", pair.writer},
+                               {"reader", pair.reader},
+                               {"profile", pair.profile},
+                               {"verdict", pair.verdict}});
   for (const auto& finding : composition.findings)
     object["findings"].push_back({{"severity", finding.severity == Severity::error ? "error" : "warning"},
                                   {"file", finding.location.file},
@@ -74,8 +78,7 @@ const ResolvedTopic& find_topic(const ResolvedComposition& composition, const st
   std::vector<std::string> known;
   for (const auto& [topic, info] : composition.topics) known.push_back(topic);
   throw ConfigError({"--explain " + name, 0, 0},
-                    composition.source.name + " has no such topic" + config::did_you_mean(name, known) +
-                        (nearest(name, known) ? " it has: " : "; it has: ") + config::joined(known));
+                    composition.source.name + " has no such topic" + config::hint(name, known, "it has"));
 }
 
 void print_topic(const ResolvedComposition& composition, const ResolvedTopic& topic) {
@@ -111,8 +114,8 @@ int check(const CheckRequest& request) {
   } else {
     print_matrix(composition);
     std::cout << composition.source.name << ": " << counted(composition.components.size(), "component") << ", "
-              << counted(composition.topics.size(), "topic") << ", " << counted(composition.pairs.size(), "pair") << ", "
-              << counted(count(composition, Severity::error), "error") << ", "
+              << counted(composition.topics.size(), "topic") << ", " << counted(composition.pairs.size(), "pair")
+              << ", " << counted(count(composition, Severity::error), "error") << ", "
               << counted(count(composition, Severity::warning), "warning") << '\n';
   }
   if (!composition.usable()) return exit_unusable;

@@ -92,8 +92,12 @@ ordered_json json_of(const Value& value) {
 ordered_json json_of(const std::vector<ParameterInfo>& parameters) {
   ordered_json list = ordered_json::array();
   for (const ParameterInfo& info : parameters) {
-    ordered_json object = {{"name", info.name},     {"kind", to_text(info.kind)}, {"unit", unit_of(info)},
-                           {"help", info.help},     {"required", info.required},  {"live", info.live},
+    ordered_json object = {{"name", info.name},
+                           {"kind", to_text(info.kind)},
+                           {"unit", unit_of(info)},
+                           {"help", info.help},
+                           {"required", info.required},
+                           {"live", info.live},
                            {"default", json_of(info.default_value)}};
     if (std::isfinite(info.min)) object["min"] = info.min;
     if (std::isfinite(info.max)) object["max"] = info.max;
@@ -105,12 +109,14 @@ ordered_json json_of(const std::vector<ParameterInfo>& parameters) {
 }
 
 ordered_json json_of(const Manifest& manifest) {
-  ordered_json object = {{"type", manifest.type}, {"help", manifest.help}, {"parameters", json_of(manifest.parameters)}};
+  ordered_json object = {
+      {"type", manifest.type}, {"help", manifest.help}, {"parameters", json_of(manifest.parameters)}};
   object["ports"] = ordered_json::array();
   for (const PortInfo& port : manifest.ports) {
-    ordered_json info = {{"name", port.name}, {"direction", to_text(port.direction)}, {"type", port.type},
-                         {"keyed", port.keyed}, {"profile", port.qos.profile()},      {"optional", port.qos.is_optional()},
-                         {"help", port.help}};
+    ordered_json info = {
+        {"name", port.name},   {"direction", to_text(port.direction)}, {"type", port.type},
+        {"keyed", port.keyed}, {"profile", port.qos.profile()},        {"optional", port.qos.is_optional()},
+        {"help", port.help}};
     if (port.qos.max_age() != forever) info["max_age_s"] = seconds(port.qos.max_age());
     if (port.qos.deadline() != forever) info["deadline_s"] = seconds(port.qos.deadline());
     object["ports"].push_back(std::move(info));
@@ -137,8 +143,10 @@ int list_all(ComponentRegistry& registry, bool json) {
       components.push_back({{"type", name}, {"error", error.what()}});
     }
   }
-  if (json) std::cout << ordered_json{{"components", components}}.dump() << std::endl;
-  else print_table(std::cout, rows);
+  if (json)
+    std::cout << ordered_json{{"components", components}}.dump() << std::endl;
+  else
+    print_table(std::cout, rows);
   if (rows.empty()) std::cerr << "no components found; KERVAN_COMPONENT_PATH names the folders to look in\n";
   return code;
 }
@@ -151,12 +159,25 @@ int describe(const DescribeRequest& request) {
   const auto names = registry.names();
   if (std::find(names.begin(), names.end(), request.component) == names.end())
     throw ConfigError({}, "there is no component type '" + request.component + "'" +
-                              config::did_you_mean(request.component, names) +
-                              (nearest(request.component, names) ? " there are: " : "; there are: ") + config::joined(names));
+                              config::hint(request.component, names, "there are"));
   InstalledComponents components(registry);
-  const Manifest manifest = components.manifest(request.component, {});
-  if (request.json) std::cout << json_of(manifest).dump() << std::endl;
-  else print(manifest);
+  Manifest manifest;
+  std::string why_no_ports;
+  try {
+    manifest = components.manifest(request.component, {});
+  } catch (const std::exception& error) {
+    // Some components cannot exist without certain parameters, and their ports depend on them.
+    manifest.type = request.component;
+    manifest.help = registry.find(request.component)->help;
+    manifest.parameters = components.parameters(request.component);
+    why_no_ports = error.what();
+  }
+  if (request.json)
+    std::cout << json_of(manifest).dump() << std::endl;
+  else
+    print(manifest);
+  if (!why_no_ports.empty())
+    std::cerr << "the ports depend on the parameters, see kervan check; without any: " << why_no_ports << '\n';
   return exit_good;
 }
 

@@ -45,14 +45,17 @@ int refuse(const std::string& message, const Location& location, bool json) {
 int dispatch(int argc, char** argv) {
   CLI::App app("Runs and checks compositions of robot components.", "kervan");
   app.require_subcommand(1);
-  app.footer("Exit codes: 0 good, 1 found something or the mission failed, 2 wrong usage or configuration, 130 Ctrl-C.");
+  app.footer(
+      "Exit codes: 0 good, 1 found something or the mission failed, 2 wrong usage or configuration, 130 Ctrl-C.");
 
   cli::RunRequest run;
   CLI::App* run_verb = app.add_subcommand("run", "Run a composition until its mission ends.");
   add_composition(*run_verb, run);
   run_verb->add_option("--for", run.time_limit, "stop after this time of the composition's clock")->type_name("TIME");
   run_verb->add_option("--threads", run.threads, "threads of the dispatcher")->check(CLI::Range(1, 64))->type_name("N");
-  run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")->capture_default_str()->type_name("DIR");
+  run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
+      ->capture_default_str()
+      ->type_name("DIR");
 
   cli::CheckRequest check;
   CLI::App* check_verb = app.add_subcommand("check", "Check a composition without running it.");
@@ -61,15 +64,17 @@ int dispatch(int argc, char** argv) {
       ->type_name("TOPIC");
 
   cli::DescribeRequest describe;
-  CLI::App* describe_verb = app.add_subcommand("describe", "List the component types, or the ports and parameters of one.");
-  describe_verb->add_option("component", describe.component, "a type, such as control/potential_field")->type_name("COMPONENT");
+  CLI::App* describe_verb =
+      app.add_subcommand("describe", "List the component types, or the ports and parameters of one.");
+  describe_verb->add_option("component", describe.component, "a type, such as control/potential_field")
+      ->type_name("COMPONENT");
   describe_verb->add_flag("--json", describe.json, "print one JSON object");
 
+  if (argc == 1) return refuse("a command is missing: " + config::joined(verbs) + "; see kervan --help", {}, false);
   // CLI11 would call a misspelt verb an unexpected argument.
   if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end())
-    return refuse("there is no command '" + std::string(argv[1]) + "'" + config::did_you_mean(argv[1], verbs) +
-                      " commands: " + config::joined(verbs),
-                  {}, false);
+    return refuse("there is no command '" + std::string(argv[1]) + "'" + config::hint(argv[1], verbs, "commands"), {},
+                  false);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -17,10 +17,28 @@ composition::ResolvedComposition prepare(const CompositionRequest& request, Comp
   return composition::resolve(composition::load(file, {request.arguments, request.place_all}), components, options);
 }
 
+namespace {
+
+void print(const composition::Finding& finding) {
+  std::cerr << to_text(finding.location) << ": "
+            << (finding.severity == composition::Severity::warning ? "warning: " : "") << finding.message << '\n';
+}
+
+}  // namespace
+
 void print_findings(const composition::ResolvedComposition& composition) {
-  for (const auto& finding : composition.findings)
-    std::cerr << to_text(finding.location) << ": "
-              << (finding.severity == composition::Severity::warning ? "warning: " : "") << finding.message << '\n';
+  for (const auto& finding : composition.findings) print(finding);
+}
+
+void require_usable(const composition::ResolvedComposition& composition) {
+  const composition::Finding* first = nullptr;
+  for (const auto& finding : composition.findings) {
+    if (finding.severity == composition::Severity::error && first == nullptr)
+      first = &finding;
+    else
+      print(finding);
+  }
+  if (first) throw ConfigError(first->location, first->message);
 }
 
 }  // namespace kervan::cli

@@ -7,41 +7,22 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Adds what ships below `folder`, if anything does.
-bool add_from(const fs::path& folder, Resources& resources) {
+/// Without links, so that messages show the file that a person would edit.
+void add(const fs::path& folder, Resources& resources) {
   std::error_code none;
-  if (fs::is_directory(folder / "share" / "kervan" / "compositions", none)) {
-    resources.compositions.push_back(folder / "share" / "kervan" / "compositions");
-    resources.files.push_back(folder / "share" / "kervan");
-    return true;
-  }
-  if (fs::is_directory(folder / "deploy" / "compositions", none)) {
-    resources.compositions.push_back(folder / "deploy" / "compositions");
-    resources.files.push_back(folder / "sim");
-    return true;
-  }
-  return false;
-}
-
-/// The first of `folder` and the folders above it that ships something.
-bool add_above(fs::path folder, Resources& resources) {
-  for (;; folder = folder.parent_path()) {
-    if (add_from(folder, resources)) return true;
-    if (folder == folder.parent_path()) return false;
-  }
+  const fs::path compositions = fs::canonical(folder / "compositions", none);
+  if (!none) resources.compositions.push_back(compositions);
+  resources.files.push_back(folder);
 }
 
 }  // namespace
 
 Resources find_resources() {
   Resources resources;
-  if (const char* share = std::getenv("KERVAN_SHARE")) {
-    resources.compositions.push_back(fs::path(share) / "compositions");
-    resources.files.emplace_back(share);
-  }
+  if (const char* share = std::getenv("KERVAN_SHARE"); share && *share) add(share, resources);
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (error || !add_above(program.parent_path(), resources)) add_above(fs::current_path(error), resources);
+  if (!error) add(program.parent_path().parent_path() / "share" / "kervan", resources);
   return resources;
 }
 

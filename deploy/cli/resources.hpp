@@ -11,8 +11,8 @@ struct Resources {
   std::vector<std::filesystem::path> files;         ///< worlds/, robots/
 };
 
-/// Installed: share/kervan beside the program. In a source tree: deploy/compositions and sim, found above the program or
-/// above the working folder. The folder in KERVAN_SHARE comes before both.
+/// The folder that KERVAN_SHARE names, then share/kervan beside the program's folder: installed files, or in a build
+/// tree links to the source tree.
 Resources find_resources();
 
 }  // namespace kervan::cli

@@ -22,7 +22,8 @@ namespace fs = std::filesystem;
 
 std::atomic<bool> stop_wanted = false;
 std::atomic<int> signal_seen = 0;
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free, "a signal handler sets them");
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free,
+              "a signal handler sets them");
 
 /// The first Ctrl-C ends the run in good order; a second one ends the program.
 extern "C" void on_signal(int signal) {
@@ -34,7 +35,8 @@ extern "C" void on_signal(int signal) {
 Duration time_limit(const RunRequest& request) {
   if (request.time_limit.empty()) return forever;
   const Duration limit = config::scalar(request.time_limit, "", "--for " + request.time_limit).as_duration();
-  if (limit <= Duration::zero()) throw ConfigError({"--for " + request.time_limit, 0, 0}, "the time must be longer than 0 s");
+  if (limit <= Duration::zero())
+    throw ConfigError({"--for " + request.time_limit, 0, 0}, "the time must be longer than 0 s");
   return limit;
 }
 
@@ -81,9 +83,12 @@ fs::path make_run_folder(const std::string& runs, const std::string& name) {
 
 const char* to_text(RunResult result) {
   switch (result) {
-    case RunResult::success: return "success";
-    case RunResult::failed: return "failed";
-    case RunResult::aborted: return "aborted";
+    case RunResult::success:
+      return "success";
+    case RunResult::failed:
+      return "failed";
+    case RunResult::aborted:
+      return "aborted";
   }
   return "";
 }
@@ -96,9 +101,9 @@ ordered_json summary(const RunOutcome& outcome) {
   for (const auto& [name, robot] : outcome.robots) {
     ordered_json clearance = nullptr;
     if (robot.min_clearance_m) clearance = rounded(*robot.min_clearance_m);
-    robots[name] = {{"reached", robot.reached},         {"error_m", rounded(robot.error_m)},
-                    {"time_s", rounded(robot.time_s)},  {"path_m", rounded(robot.path_m)},
-                    {"contacts", robot.contacts},       {"min_clearance_m", clearance}};
+    robots[name] = {{"reached", robot.reached},        {"error_m", rounded(robot.error_m)},
+                    {"time_s", rounded(robot.time_s)}, {"path_m", rounded(robot.path_m)},
+                    {"contacts", robot.contacts},      {"min_clearance_m", clearance}};
   }
   ordered_json object = {{"result", to_text(outcome.result)},
                          {"robots", robots},
@@ -127,9 +132,9 @@ void print_result(std::ostream& out, const RunOutcome& outcome, const fs::path& 
   if (!outcome.reason.empty()) out << ": " << outcome.reason;
   out << '\n';
   for (const auto& [name, robot] : outcome.robots) {
-    out << "  " << name << (robot.reached ? "  reached its goal in " : "  did not reach its goal in ") << decimal(robot.time_s, 1)
-        << " s, error " << decimal(robot.error_m, 3) << " m, path " << decimal(robot.path_m, 2) << " m, " << robot.contacts
-        << (robot.contacts == 1 ? " contact" : " contacts");
+    out << "  " << name << (robot.reached ? "  reached its goal in " : "  did not reach its goal in ")
+        << decimal(robot.time_s, 1) << " s, error " << decimal(robot.error_m, 3) << " m, path "
+        << decimal(robot.path_m, 2) << " m, " << robot.contacts << (robot.contacts == 1 ? " contact" : " contacts");
     if (robot.min_clearance_m) out << ", least clearance " << decimal(*robot.min_clearance_m, 3) << " m";
     out << '\n';
   }
@@ -150,8 +155,7 @@ int run(const RunRequest& request) {
   const Duration limit = time_limit(request);
   ComponentRegistry registry(ComponentRegistry::default_folders());
   const ResolvedComposition composition = prepare(request, registry);
-  print_findings(composition);
-  if (!composition.usable()) return exit_unusable;
+  require_usable(composition);
   require_runnable(composition);
 
   std::signal(SIGINT, on_signal);

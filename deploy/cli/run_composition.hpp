@@ -40,10 +40,10 @@ struct RunOutcome {
 };
 
 struct RunOptions {
-  std::filesystem::path run_folder;          ///< exists
-  Duration time_limit = forever;             ///< on the composition's clock
-  unsigned threads = 0;                      ///< 0: as the composition says
-  const std::atomic<bool>* stop = nullptr;   ///< set by Ctrl-C: end in good order, with a zero command
+  std::filesystem::path run_folder;         ///< exists
+  Duration time_limit = forever;            ///< on the composition's clock
+  unsigned threads = 0;                     ///< 0: as the composition says
+  const std::atomic<bool>* stop = nullptr;  ///< set by Ctrl-C: end in good order, with a zero command
   bool log_to_console = true;
 };
 

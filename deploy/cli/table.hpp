@@ -8,7 +8,8 @@
 
 namespace kervan::cli {
 
-inline void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& rows, const std::string& indent = "") {
+inline void print_table(std::ostream& out, const std::vector<std::vector<std::string>>& rows,
+                        const std::string& indent = "") {
   std::vector<std::size_t> widths;
   for (const auto& row : rows)
     for (std::size_t i = 0; i < row.size(); ++i) {

@@ -15,16 +15,17 @@ struct TypeWord {
 };
 
 constexpr TypeWord type_words[] = {
-    {"bool", ParameterKind::boolean}, {"int", ParameterKind::integer}, {"number", ParameterKind::number},
-    {"duration", ParameterKind::duration}, {"text", ParameterKind::text}, {"enum", ParameterKind::choice},
-    {"path", ParameterKind::path}, {"pose", ParameterKind::pose}, {"points", ParameterKind::points},
+    {"bool", ParameterKind::boolean},      {"int", ParameterKind::integer}, {"number", ParameterKind::number},
+    {"duration", ParameterKind::duration}, {"text", ParameterKind::text},   {"enum", ParameterKind::choice},
+    {"path", ParameterKind::path},         {"pose", ParameterKind::pose},   {"points", ParameterKind::points},
 };
 
 ParameterKind kind_of(const Node& type) {
   std::vector<std::string> words;
   for (const TypeWord& known : type_words) words.emplace_back(known.word);
   const std::string word = type.as_choice(words);
-  return std::find_if(std::begin(type_words), std::end(type_words), [&](const TypeWord& t) { return word == t.word; })->kind;
+  return std::find_if(std::begin(type_words), std::end(type_words), [&](const TypeWord& t) { return word == t.word; })
+      ->kind;
 }
 
 double limit(const Node& node, const ParameterInfo& info) {
@@ -73,8 +74,8 @@ std::vector<std::string> names_of(const std::vector<Argument>& arguments) {
 
 template <class Arguments>
 auto* find(Arguments& arguments, const std::string& name) {
-  const auto found =
-      std::find_if(arguments.begin(), arguments.end(), [&](const Argument& argument) { return argument.info.name == name; });
+  const auto found = std::find_if(arguments.begin(), arguments.end(),
+                                  [&](const Argument& argument) { return argument.info.name == name; });
   return found == arguments.end() ? nullptr : &*found;
 }
 
@@ -95,7 +96,8 @@ class Substitution {
       const std::size_t close = text.find('}', open);
       if (close == std::string::npos) place_.fail("'${' is not closed by '}'");
       const Node& value = value_of(text.substr(open + 2, close - open - 2));
-      if (!value.is_scalar()) place_.fail("${" + value.name + "} is " + value.shown() + " and cannot be part of a text");
+      if (!value.is_scalar())
+        place_.fail("${" + value.name + "} is " + value.shown() + " and cannot be part of a text");
       node.text += value.text;
       at = close + 1;
     }
@@ -116,9 +118,7 @@ class Substitution {
   const Node& value_of(const std::string& name) const {
     const Argument* argument = find(arguments_, name);
     if (argument == nullptr || !argument->value)
-      place_.fail("there is no argument '" + name + "'" + config::did_you_mean(name, names_of(arguments_)) +
-                  (nearest(name, names_of(arguments_)) ? " declared: " : "; declared: ") +
-                  config::joined(names_of(arguments_)));
+      place_.fail("there is no argument '" + name + "'" + config::hint(name, names_of(arguments_), "declared"));
     return *argument->value;
   }
 
@@ -148,8 +148,7 @@ void give_from_command_line(std::vector<Argument>& arguments, const std::vector<
     Argument* argument = find(arguments, name);
     if (argument == nullptr) {
       const auto names = names_of(arguments);
-      throw ConfigError(origin, "the composition has no argument '" + name + "'" + config::did_you_mean(name, names) +
-                                    (nearest(name, names) ? " it has: " : "; it has: ") + config::joined(names));
+      throw ConfigError(origin, "the composition has no argument '" + name + "'" + config::hint(name, names, "it has"));
     }
     const bool is_list = argument->info.kind == ParameterKind::pose || argument->info.kind == ParameterKind::points;
     give(*argument, is_list ? config::parse(value, origin.file) : config::scalar(value, "", origin.file));

@@ -1,5 +1,5 @@
-/// A composition as its file says it, with arguments filled in and templates expanded, but not yet compared with what the
-/// components say of themselves; resolve.hpp does that.
+/// A composition as its file says it, with arguments filled in and templates expanded, but not yet compared with what
+/// the components say of themselves; resolve.hpp does that.
 #pragma once
 
 #include <filesystem>
@@ -36,13 +36,13 @@ struct Domain {
 
 /// One component instance. What its type must confirm (parameters, ports) is kept as written.
 struct ComponentEntry {
-  std::string name;        ///< "world", "r1/control"
-  std::string scope;       ///< the template instance it belongs to ("r1"), empty for the file's own components
-  config::Node type;       ///< "control/potential_field"
-  config::Node params;     ///< a map
-  config::Node remap;      ///< a map: port -> topic or component/port
-  std::string log_level;   ///< trace, debug, info, warn, error or off
-  Location location;       ///< where its name stands
+  std::string name;       ///< "world", "r1/control"
+  std::string scope;      ///< the template instance it belongs to ("r1"), empty for the file's own components
+  config::Node type;      ///< "control/potential_field"
+  config::Node params;    ///< a map
+  config::Node remap;     ///< a map: port -> topic or component/port
+  std::string log_level;  ///< trace, debug, info, warn, error or off
+  Location location;      ///< where its name stands
 };
 
 struct ProfileEntry {
@@ -59,7 +59,7 @@ enum class RestartPolicy { never, on_failure, always };
 
 struct Restart {
   RestartPolicy policy = RestartPolicy::never;
-  int max = 5;                                     ///< more restarts than this within `window` end the attempts
+  int max = 5;  ///< more restarts than this within `window` end the attempts
   Duration window = std::chrono::seconds(30);
 };
 

@@ -31,15 +31,18 @@ std::vector<std::string> keys_of(const Node& map) {
 }
 
 Node* child_of(Node& map, const std::string& key) {
-  const auto found = std::find_if(map.children.begin(), map.children.end(), [&](const Node& c) { return c.name == key; });
+  const auto found =
+      std::find_if(map.children.begin(), map.children.end(), [&](const Node& c) { return c.name == key; });
   return found == map.children.end() ? nullptr : &*found;
 }
 
 std::vector<std::string> split(const std::string& path) {
   std::vector<std::string> parts(1);
   for (const char c : path) {
-    if (c == '.') parts.emplace_back();
-    else parts.back() += c;
+    if (c == '.')
+      parts.emplace_back();
+    else
+      parts.back() += c;
   }
   return parts;
 }
@@ -68,10 +71,11 @@ void set_value(Node& components, const Node& setting, const std::string& templat
                         config::did_you_mean(path[0], keys_of(components)));
   const std::vector<std::string> allowed = {"type", "params", "remap", "log"};
   if (path.size() < 2 || std::find(allowed.begin(), allowed.end(), path[1]) == allowed.end())
-    setting.fail_at_key("'" + setting.name + "' names nothing that can be set; write e.g. " + path[0] + ".params.NAME, " +
-                        path[0] + ".remap.PORT or " + path[0] + ".log");
+    setting.fail_at_key("'" + setting.name + "' names nothing that can be set; write e.g. " + path[0] +
+                        ".params.NAME, " + path[0] + ".remap.PORT or " + path[0] + ".log");
   for (std::size_t i = 1; i < path.size(); ++i) {
-    if (!node->is_map()) setting.fail_at_key("'" + node->name + "' is " + node->shown() + ", so nothing below it can be set");
+    if (!node->is_map())
+      setting.fail_at_key("'" + node->name + "' is " + node->shown() + ", so nothing below it can be set");
     Node* next = child_of(*node, path[i]);
     if (next == nullptr) {
       Node made = empty_map_at(setting.key_location);
@@ -95,7 +99,8 @@ std::vector<Argument> scope_of(const Node& definition, const Node& instance, con
     names.push_back(parameter.info.name);
     for (const Argument& argument : arguments)
       if (argument.info.name == parameter.info.name)
-        throw ConfigError(parameter.location, "'" + parameter.info.name + "' is already an argument of the composition (" +
+        throw ConfigError(parameter.location, "'" + parameter.info.name +
+                                                  "' is already an argument of the composition (" +
                                                   to_text(argument.location) + "); use another name");
   }
   const Node with = map_or_empty(instance, "with");
@@ -104,8 +109,7 @@ std::vector<Argument> scope_of(const Node& definition, const Node& instance, con
         std::find_if(scope.begin(), scope.end(), [&](const Argument& p) { return p.info.name == given.name; });
     if (parameter == scope.end())
       given.fail_at_key("the template '" + definition.name + "' has no parameter '" + given.name + "'" +
-                        config::did_you_mean(given.name, names) + (nearest(given.name, names) ? " it has: " : "; it has: ") +
-                        config::joined(names));
+                        config::hint(given.name, names, "it has"));
     give(*parameter, substitute(given, arguments));
   }
   for (const Argument& parameter : scope)
@@ -123,8 +127,7 @@ void expand_instance(const Node& instance, const Node* templates, const std::vec
   const std::vector<std::string> known = templates ? keys_of(*templates) : std::vector<std::string>{};
   const Node* definition = templates ? templates->optional(name) : nullptr;
   if (definition == nullptr)
-    reference.fail("there is no template '" + name + "'" + config::did_you_mean(name, known) +
-                   (nearest(name, known) ? " there are: " : "; there are: ") + config::joined(known));
+    reference.fail("there is no template '" + name + "'" + config::hint(name, known, "there are"));
   Node components = substitute(definition->required("components"), scope_of(*definition, instance, arguments));
   const Node settings = map_or_empty(instance, "set");
   for (const Node& setting : settings.map()) set_value(components, substitute(setting, arguments), name);
@@ -137,7 +140,8 @@ void check_template(const Node& definition) {
   for (const Node& component : definition.required("components").map()) {
     require_name(component, "component");
     if (component.optional("template"))
-      component.required("template").fail_at_key("a template cannot hold an instance of a template; write its components out");
+      component.required("template")
+          .fail_at_key("a template cannot hold an instance of a template; write its components out");
   }
 }
 
@@ -151,7 +155,9 @@ void require_name(const Node& node, const char* what) {
   node.fail_at_key("'" + name + "' is not a name for a " + what + "; use a letter, then letters, digits and _");
 }
 
-std::string log_level_of(const Node& node) { return node.as_choice({"trace", "debug", "info", "warn", "error", "off"}); }
+std::string log_level_of(const Node& node) {
+  return node.as_choice({"trace", "debug", "info", "warn", "error", "off"});
+}
 
 std::vector<ComponentEntry> expand_components(const Node& components, const Node* templates,
                                               const std::vector<Argument>& arguments, const std::string& log_level) {
@@ -160,8 +166,10 @@ std::vector<ComponentEntry> expand_components(const Node& components, const Node
   std::vector<ComponentEntry> entries;
   for (const Node& node : components.map()) {
     require_name(node, "component");
-    if (node.optional("template")) expand_instance(node, templates, arguments, log_level, entries);
-    else entries.push_back(component_of(substitute(node, arguments), "", log_level));
+    if (node.optional("template"))
+      expand_instance(node, templates, arguments, log_level, entries);
+    else
+      entries.push_back(component_of(substitute(node, arguments), "", log_level));
   }
   return entries;
 }

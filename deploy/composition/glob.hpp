@@ -13,8 +13,8 @@ bool matches(std::string_view pattern, std::string_view name);
 /// Whether `name` or one of the names above it fits: `r*` covers `r1/control` because it matches `r1`.
 bool covers(std::string_view pattern, std::string_view name);
 
-/// Whether `a` is more specific than `b`: a plain name before any pattern, then the one with more characters that are not
-/// wildcards, then the one without `**`.
+/// Whether `a` is more specific than `b`: a plain name before any pattern, then the one with more characters that are
+/// not wildcards, then the one without `**`.
 bool more_specific(std::string_view a, std::string_view b);
 
 }  // namespace kervan::composition

@@ -29,8 +29,10 @@ Clock read_clock(const Node& node) {
   if (const Node* pace = node.optional("pace")) {
     if (clock.mode != ClockMode::sim) pace->fail_at_key("'pace' has a meaning under clock sim only");
     const std::string text = pace->as_text();
-    if (text == "real-time") clock.pace = 1.0;
-    else if (text == "max") clock.pace = 0.0;
+    if (text == "real-time")
+      clock.pace = 1.0;
+    else if (text == "max")
+      clock.pace = 0.0;
     else if (text.ends_with('x')) {
       clock.pace = config::scalar(text.substr(0, text.size() - 1), "pace", to_text(pace->location)).as_number();
       if (clock.pace <= 0.0) pace->fail(pace->shown() + " is out of range; allowed: more than 0x");
@@ -81,7 +83,8 @@ Restart read_restart(const Node& node) {
 /// Places components into containers and remembers which line placed each, to name both when one is placed twice.
 class Placement {
  public:
-  explicit Placement(const std::vector<ComponentEntry>& components) : components_(components), placed_(components.size()) {}
+  explicit Placement(const std::vector<ComponentEntry>& components)
+      : components_(components), placed_(components.size()) {}
 
   void place(const Node& pattern, const std::string& container) {
     bool found = false;
@@ -90,24 +93,24 @@ class Placement {
       found = true;
       if (placed_[i].container == container) continue;
       if (!placed_[i].container.empty())
-        throw ConfigError(pattern.location, "the component '" + components_[i].name + "' is already in the container '" +
-                                                placed_[i].container + "' (" + to_text(placed_[i].location) +
-                                                "); it can be in one only");
+        throw ConfigError(pattern.location, "the component '" + components_[i].name +
+                                                "' is already in the container '" + placed_[i].container + "' (" +
+                                                to_text(placed_[i].location) + "); it can be in one only");
       placed_[i] = {container, pattern.location};
     }
     if (!found)
-      throw ConfigError(pattern.location, "there is no component '" + pattern.text + "'" +
-                                              config::did_you_mean(pattern.text, names()));
+      throw ConfigError(pattern.location,
+                        "there is no component '" + pattern.text + "'" + config::did_you_mean(pattern.text, names()));
   }
 
-  /// Components that no line placed: the mission, which is not written under `components:`, goes where the first container
-  /// is; for any other it is an error.
+  /// Components that no line placed: the mission, which is not written under `components:`, goes where the first
+  /// container is; for any other it is an error.
   void finish(std::vector<Container>& containers, const std::string& implied) {
     for (std::size_t i = 0; i < components_.size(); ++i) {
       if (!placed_[i].container.empty()) continue;
       if (components_[i].name != implied)
-        throw ConfigError(components_[i].location,
-                          "the component '" + components_[i].name + "' is in no container; add it to one under 'containers'");
+        throw ConfigError(components_[i].location, "the component '" + components_[i].name +
+                                                       "' is in no container; add it to one under 'containers'");
       placed_[i].container = containers.front().name;
     }
     for (Container& container : containers)
@@ -149,8 +152,8 @@ std::vector<Container> read_containers(const Node& node, const Composition& comp
     if (const Node* host = given.optional("host")) {
       container.host = host->as_text();
       if (std::find(hosts.begin(), hosts.end(), container.host) == hosts.end())
-        host->fail("there is no host '" + container.host + "'" + config::did_you_mean(container.host, hosts) +
-                   (nearest(container.host, hosts) ? " under domain.hosts: " : "; under domain.hosts: ") + config::joined(hosts));
+        host->fail("there is no host '" + container.host + "'" +
+                   config::hint(container.host, hosts, "under domain.hosts"));
     }
     if (const Node* threads = given.optional("threads")) {
       const std::int64_t value = threads->as_integer();
@@ -200,14 +203,16 @@ std::vector<TopicEntry> read_topics(const Node& node) {
 
 void check_version(const Node& root) {
   const Node& version = root.required("kervan");
-  if (version.as_integer() != 1) version.fail("version " + version.text + " of the format is not known; this program reads 1");
+  if (version.as_integer() != 1)
+    version.fail("version " + version.text + " of the format is not known; this program reads 1");
 }
 
-Composition load_node(const Node& root, const std::string& shown_as, const fs::path& folder, const LoadOptions& options) {
+Composition load_node(const Node& root, const std::string& shown_as, const fs::path& folder,
+                      const LoadOptions& options) {
   if (!root.is_map()) root.fail("a composition is a map that begins with 'kervan: 1'");
   check_version(root);
-  root.only_keys({"kervan", "name", "help", "args", "clock", "domain", "log", "qos", "topics", "templates", "components",
-                  "containers", "mission"});
+  root.only_keys({"kervan", "name", "help", "args", "clock", "domain", "log", "qos", "topics", "templates",
+                  "components", "containers", "mission"});
   Composition composition;
   composition.file = shown_as;
   composition.folder = folder;
@@ -221,7 +226,8 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
   const Node& name = root.required("name");
   composition.name = name.as_text();
   if (composition.name.empty() || composition.name.find_first_of("/ ${}") != std::string::npos)
-    name.fail(name.shown() + " is not a name; it also names the folder of a run, so write it without spaces and slashes");
+    name.fail(name.shown() +
+              " is not a name; it also names the folder of a run, so write it without spaces and slashes");
   if (const auto help = filled("help")) composition.help = help->as_text();
   if (const auto clock = filled("clock")) composition.clock = read_clock(*clock);
   if (const auto domain = filled("domain")) composition.domain = read_domain(*domain);
@@ -251,9 +257,12 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
 
 std::string_view to_text(ClockMode mode) {
   switch (mode) {
-    case ClockMode::wall: return "wall";
-    case ClockMode::sim: return "sim";
-    case ClockMode::lockstep: return "lockstep";
+    case ClockMode::wall:
+      return "wall";
+    case ClockMode::sim:
+      return "sim";
+    case ClockMode::lockstep:
+      return "lockstep";
   }
   return "";
 }
@@ -269,12 +278,14 @@ Composition load(const fs::path& file, const LoadOptions& options) {
   return load_node(config::load(file.string(), shown), shown, fs::absolute(file).parent_path(), options);
 }
 
-Composition load_text(const std::string& text, const std::string& shown_as, const fs::path& folder, const LoadOptions& options) {
+Composition load_text(const std::string& text, const std::string& shown_as, const fs::path& folder,
+                      const LoadOptions& options) {
   return load_node(config::parse(text, shown_as), shown_as, folder, options);
 }
 
 fs::path find_composition(const std::string& name_or_file, const std::vector<fs::path>& folders) {
-  if (name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml") || name_or_file.find('/') != std::string::npos) {
+  if (name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml") ||
+      name_or_file.find('/') != std::string::npos) {
     if (!fs::is_regular_file(name_or_file)) throw ConfigError({name_or_file, 0, 0}, "there is no such file");
     return name_or_file;
   }
@@ -287,8 +298,8 @@ fs::path find_composition(const std::string& name_or_file, const std::vector<fs:
       if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
   }
   const std::vector<std::string> names(known.begin(), known.end());
-  throw ConfigError({}, "there is no composition '" + name_or_file + "'" + config::did_you_mean(name_or_file, names) +
-                            (nearest(name_or_file, names) ? " there are: " : "; there are: ") + config::joined(names));
+  throw ConfigError({},
+                    "there is no composition '" + name_or_file + "'" + config::hint(name_or_file, names, "there are"));
 }
 
 std::string shown_path(const fs::path& path) {

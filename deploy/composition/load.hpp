@@ -21,9 +21,10 @@ Composition load(const std::filesystem::path& file, const LoadOptions& options =
 Composition load_text(const std::string& text, const std::string& shown_as, const std::filesystem::path& folder,
                       const LoadOptions& options = {});
 
-/// The file of a composition: `name_or_file` itself if it ends in .yaml or holds a slash, else NAME.yaml in the first of
-/// `folders` that has it. Throws ConfigError with a suggestion and the list of what there is.
-std::filesystem::path find_composition(const std::string& name_or_file, const std::vector<std::filesystem::path>& folders);
+/// The file of a composition: `name_or_file` itself if it ends in .yaml or holds a slash, else NAME.yaml in the first
+/// of `folders` that has it. Throws ConfigError with a suggestion and the list of what there is.
+std::filesystem::path find_composition(const std::string& name_or_file,
+                                       const std::vector<std::filesystem::path>& folders);
 
 /// The path as a person would write it from here: relative if it lies below the working folder.
 std::string shown_path(const std::filesystem::path& path);

@@ -33,12 +33,14 @@ struct Field {
 const Field fields[] = {
     {"reliability",
      [](QosProfile& p, const Node& v) {
-       p.reliability = v.as_choice({"reliable", "best_effort"}) == "reliable" ? Reliability::reliable : Reliability::best_effort;
+       p.reliability =
+           v.as_choice({"reliable", "best_effort"}) == "reliable" ? Reliability::reliable : Reliability::best_effort;
      },
      [](const QosProfile& p) { return std::string(to_text(p.reliability)); }},
     {"durability",
      [](QosProfile& p, const Node& v) {
-       p.durability = v.as_choice({"volatile", "transient_local"}) == "volatile" ? Durability::volatile_ : Durability::transient_local;
+       p.durability = v.as_choice({"volatile", "transient_local"}) == "volatile" ? Durability::volatile_
+                                                                                 : Durability::transient_local;
      },
      [](const QosProfile& p) { return std::string(to_text(p.durability)); }},
     {"depth", [](QosProfile& p, const Node& v) { p.depth = depth_or_all(v); },
@@ -53,7 +55,9 @@ const Field fields[] = {
      },
      [](const QosProfile& p) { return std::string(to_text(p.ownership)); }},
     {"network",
-     [](QosProfile& p, const Node& v) { p.network = v.as_choice({"sync", "async"}) == "sync" ? Network::sync : Network::async; },
+     [](QosProfile& p, const Node& v) {
+       p.network = v.as_choice({"sync", "async"}) == "sync" ? Network::sync : Network::async;
+     },
      [](const QosProfile& p) { return std::string(to_text(p.network)); }},
     {"trace", [](QosProfile& p, const Node& v) { p.trace = v.as_bool(); },
      [](const QosProfile& p) { return std::string(p.trace ? "true" : "false"); }},
@@ -92,8 +96,9 @@ Profiles::Profiles(const std::vector<ProfileEntry>& entries) {
     profiles_[profile.name] = all_from(profile, "built-in profile " + profile.name);
   for (const ProfileEntry& entry : entries)
     if (builtin_profile(entry.name))
-      entry.settings.fail_at_key("'" + entry.name + "' is a built-in profile; give yours another name and write 'extends: " +
-                                 entry.name + "'");
+      entry.settings.fail_at_key("'" + entry.name +
+                                 "' is a built-in profile; give yours another name and write 'extends: " + entry.name +
+                                 "'");
   for (const ProfileEntry& entry : entries) {
     std::vector<std::string> path;
     build(entry, entries, path);
@@ -113,13 +118,14 @@ const EffectiveQos& Profiles::build(const ProfileEntry& entry, const std::vector
   } else {
     std::vector<std::string> all = names();
     for (const ProfileEntry& other : entries)
-      if (std::find(all.begin(), all.end(), other.name) == all.end() && other.name != entry.name) all.push_back(other.name);
-    const auto next = std::find_if(entries.begin(), entries.end(), [&](const ProfileEntry& e) { return e.name == base; });
+      if (std::find(all.begin(), all.end(), other.name) == all.end() && other.name != entry.name)
+        all.push_back(other.name);
+    const auto next =
+        std::find_if(entries.begin(), entries.end(), [&](const ProfileEntry& e) { return e.name == base; });
     if (std::find(path.begin(), path.end(), base) != path.end())
       extends->fail("the profile '" + base + "' extends itself");
     if (next == entries.end())
-      extends->fail("there is no profile '" + base + "'" + config::did_you_mean(base, all) +
-                    (nearest(base, all) ? " there are: " : "; there are: ") + config::joined(all));
+      extends->fail("there is no profile '" + base + "'" + config::hint(base, all, "there are"));
     qos = build(*next, entries, path);
   }
   qos.profile.name = entry.name;
@@ -164,16 +170,15 @@ EffectiveQos effective_qos(const TopicFacts& topic, const TopicEntry* entry, con
     const std::string name = named->as_text();
     const EffectiveQos* found = profiles.find(name);
     const auto names = profiles.names();
-    if (found == nullptr)
-      named->fail("there is no profile '" + name + "'" + config::did_you_mean(name, names) +
-                  (nearest(name, names) ? " there are: " : "; there are: ") + config::joined(names));
+    if (found == nullptr) named->fail("there is no profile '" + name + "'" + config::hint(name, names, "there are"));
     qos = *found;
   } else {
     const auto declared = builtin_profile(topic.declared_profile);
     qos = all_from(declared.value_or(QosProfile{}), "profile " + topic.declared_profile + ", " + topic.declared_by);
   }
   const auto untouched = [&](const char* name) {
-    const auto value = std::find_if(qos.values.begin(), qos.values.end(), [&](const QosValue& v) { return v.name == name; });
+    const auto value =
+        std::find_if(qos.values.begin(), qos.values.end(), [&](const QosValue& v) { return v.name == name; });
     return value->origin.starts_with("built-in") || value->origin.starts_with("profile");
   };
   for (const Field& field : fields) {

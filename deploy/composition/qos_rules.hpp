@@ -1,5 +1,5 @@
-/// Quality of service as a composition states it: named profiles under `qos:`, and what `topics:` says of single topics or
-/// patterns of them. Every value of an effective profile knows the line it came from.
+/// Quality of service as a composition states it: named profiles under `qos:`, and what `topics:` says of single topics
+/// or patterns of them. Every value of an effective profile knows the line it came from.
 #pragma once
 
 #include <map>

@@ -24,7 +24,7 @@ std::string find_file(const Node& node, const fs::path& folder, const std::vecto
   }
   std::string list;
   for (const fs::path& candidate : tried) {
-    if (fs::is_regular_file(candidate)) return fs::absolute(candidate).lexically_normal().string();
+    if (fs::is_regular_file(candidate)) return fs::canonical(candidate).string();
     list += (list.empty() ? "" : ", ") + shown_path(candidate);
   }
   node.fail("there is no file " + node.shown() + "; looked for " + list);
@@ -35,8 +35,7 @@ ResolvedComponent resolve_component(const ComponentEntry& entry, ComponentCatalo
   const std::string type = entry.type.as_text();
   const std::vector<std::string> types = catalogue.types();
   if (std::find(types.begin(), types.end(), type) == types.end())
-    entry.type.fail("there is no component type '" + type + "'" + config::did_you_mean(type, types) +
-                    (nearest(type, types) ? " there are: " : "; there are: ") + config::joined(types));
+    entry.type.fail("there is no component type '" + type + "'" + config::hint(type, types, "there are"));
   ResolvedComponent component;
   component.name = entry.name;
   component.log_level = entry.log_level;
@@ -75,7 +74,8 @@ ResolvedComposition resolve(Composition composition, ComponentCatalogue& catalog
     resolved.components.push_back(resolve_component(entry, catalogue, find));
   for (const Container& container : composition.containers)
     for (ResolvedComponent& component : resolved.components)
-      if (std::find(container.components.begin(), container.components.end(), component.name) != container.components.end())
+      if (std::find(container.components.begin(), container.components.end(), component.name) !=
+          container.components.end())
         component.container = container.name;
   resolved.source = std::move(composition);
   name_topics(resolved);

@@ -28,21 +28,22 @@ class ComponentCatalogue {
 };
 
 struct ResolveOptions {
-  std::vector<std::filesystem::path> resource_folders;  ///< where path parameters are looked up after the file's own folder
-  std::vector<std::string> external_topics;             ///< written by the framework itself: no writer is missed there
+  std::vector<std::filesystem::path>
+      resource_folders;                      ///< where path parameters are looked up after the file's own folder
+  std::vector<std::string> external_topics;  ///< written by the framework itself: no writer is missed there
 };
 
 struct ResolvedPort {
   PortInfo info;
-  std::string topic;   ///< absolute: "/r1/sonar"
-  Location location;   ///< of the remap, else of the component
+  std::string topic;  ///< absolute: "/r1/sonar"
+  Location location;  ///< of the remap, else of the component
 };
 
 struct ResolvedComponent {
-  std::string name;       ///< "r1/control"
+  std::string name;  ///< "r1/control"
   std::string container;
   std::string log_level;
-  ValueMap parameters;    ///< those the composition gives, in SI units
+  ValueMap parameters;  ///< those the composition gives, in SI units
   Manifest manifest;
   std::vector<ResolvedPort> ports;  ///< in the manifest's order
   Location location;
@@ -82,7 +83,9 @@ struct ResolvedComposition {
   std::vector<Pair> pairs;
   std::vector<Finding> findings;
 
-  const ResolvedPort& port(PortReference reference) const { return components[reference.component].ports[reference.port]; }
+  const ResolvedPort& port(PortReference reference) const {
+    return components[reference.component].ports[reference.port];
+  }
   /// "r1/control.goal"
   std::string port_name(PortReference reference) const;
   bool usable() const;  ///< no finding is an error

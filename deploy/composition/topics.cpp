@@ -48,8 +48,7 @@ class TopicNames {
       for (const Node& remap : entry(c).remap.map())
         if (std::find(names.begin(), names.end(), remap.name) == names.end())
           remap.fail_at_key(component.manifest.type + " has no port '" + remap.name + "'" +
-                            config::did_you_mean(remap.name, names) + (nearest(remap.name, names) ? " it has: " : "; it has: ") +
-                            config::joined(names));
+                            config::hint(remap.name, names, "it has"));
     }
   }
 
@@ -80,7 +79,8 @@ class TopicNames {
 
   /// The port that `component/port` names. Port names may hold slashes too, so the longest component name decides.
   std::optional<PortReference> port_of(const Node& remap, const std::string& scope, const std::string& value) const {
-    for (std::size_t slash = value.rfind('/'); slash != std::string::npos && slash > 0; slash = value.rfind('/', slash - 1)) {
+    for (std::size_t slash = value.rfind('/'); slash != std::string::npos && slash > 0;
+         slash = value.rfind('/', slash - 1)) {
       const std::string name = (scope.empty() ? "" : scope + "/") + value.substr(0, slash);
       for (std::size_t c = 0; c < resolved_.components.size(); ++c) {
         if (resolved_.components[c].name != name) continue;
@@ -88,8 +88,7 @@ class TopicNames {
         const auto names = port_names(resolved_.components[c]);
         const auto found = std::find(names.begin(), names.end(), port);
         if (found != names.end()) return PortReference{c, static_cast<std::size_t>(found - names.begin())};
-        remap.fail("the component '" + name + "' has no port '" + port + "'" + config::did_you_mean(port, names) +
-                   (nearest(port, names) ? " it has: " : "; it has: ") + config::joined(names));
+        remap.fail("the component '" + name + "' has no port '" + port + "'" + config::hint(port, names, "it has"));
       }
     }
     return std::nullopt;
@@ -144,12 +143,13 @@ class Judge {
   void check_entries() const {
     const auto names = topic_names();
     for (const TopicEntry& entry : resolved_.source.topics) {
-      if (std::any_of(names.begin(), names.end(), [&](const std::string& name) { return matches(entry.pattern, name); })) continue;
+      if (std::any_of(names.begin(), names.end(),
+                      [&](const std::string& name) { return matches(entry.pattern, name); }))
+        continue;
       entry.settings.fail_at_key(is_pattern(entry.pattern)
                                      ? "no topic fits '" + entry.pattern + "'; there are: " + config::joined(names)
-                                     : "there is no topic '" + entry.pattern + "'" + config::did_you_mean(entry.pattern, names) +
-                                           (nearest(entry.pattern, names) ? " there are: " : "; there are: ") +
-                                           config::joined(names));
+                                     : "there is no topic '" + entry.pattern + "'" +
+                                           config::hint(entry.pattern, names, "there are"));
     }
   }
 
@@ -159,8 +159,8 @@ class Judge {
 
   /// "is written by world.r1/sonar (lab.yaml:12:3) as sensor_msgs::msg::Range"
   std::string described(PortReference reference) const {
-    return (info(reference).direction == PortDirection::output ? "written by " : "read by ") + resolved_.port_name(reference) +
-           " (" + to_text(resolved_.port(reference).location) + ")";
+    return (info(reference).direction == PortDirection::output ? "written by " : "read by ") +
+           resolved_.port_name(reference) + " (" + to_text(resolved_.port(reference).location) + ")";
   }
 
   void check_types(const ResolvedTopic& topic) {
@@ -170,12 +170,12 @@ class Judge {
     for (const PortReference other : ports) {
       if (info(other).type != topic.type)
         find(Severity::error, other,
-             "the topic '" + topic.name + "' is " + described(first) + " as " + topic.type + ", but " + described(other) +
-                 " as " + info(other).type);
+             "the topic '" + topic.name + "' is " + described(first) + " as " + topic.type + ", but " +
+                 described(other) + " as " + info(other).type);
       else if (info(other).layout_hash != topic.layout_hash)
         find(Severity::error, other,
-             "the topic '" + topic.name + "' is " + described(first) + " and " + described(other) + " with two layouts of " +
-                 topic.type + "; build both against the same IDL");
+             "the topic '" + topic.name + "' is " + described(first) + " and " + described(other) +
+                 " with two layouts of " + topic.type + "; build both against the same IDL");
     }
   }
 
@@ -192,8 +192,9 @@ class Judge {
       for (const PortReference other : deciding)
         if (info(other).type == topic.type && std::string_view(info(other).qos.profile()) != facts.declared_profile)
           find(Severity::error, other,
-               "the topic '" + topic.name + "' is " + described(deciding.front()) + " with profile " + facts.declared_profile +
-                   " and " + described(other) + " with profile " + info(other).qos.profile() + "; choose one under 'topics'");
+               "the topic '" + topic.name + "' is " + described(deciding.front()) + " with profile " +
+                   facts.declared_profile + " and " + described(other) + " with profile " + info(other).qos.profile() +
+                   "; choose one under 'topics'");
     topic.qos = effective_qos(facts, entry, profiles_);
   }
 
@@ -215,10 +216,9 @@ class Judge {
         written.push_back(name);
         if (other.type == topic.type) same_type.push_back(name);
       }
-      const auto near = nearest(topic.name, same_type) ? nearest(topic.name, same_type) : nearest(topic.name, written);
-      std::string hint;
-      if (near) hint = "; did you mean '" + *near + "'?";
-      else if (!same_type.empty()) hint = "; written with its type: " + config::joined(same_type);
+      std::string hint = config::did_you_mean(topic.name, same_type);
+      if (hint.empty()) hint = config::did_you_mean(topic.name, written);
+      if (hint.empty() && !same_type.empty()) hint = "; written with its type: " + config::joined(same_type);
       find(Severity::error, reader,
            "nothing writes '" + topic.name + "', which " + resolved_.port_name(reader) + " needs" + hint);
     }
@@ -233,8 +233,8 @@ class Judge {
     for (const PortReference writer : topic.writers) {
       const bool types_agree =
           info(writer).type == info(reader).type && info(writer).layout_hash == info(reader).layout_hash;
-      resolved_.pairs.push_back({topic.name, info(writer).type, resolved_.port_name(writer), resolved_.port_name(reader),
-                                 topic.qos.profile.name,
+      resolved_.pairs.push_back({topic.name, info(writer).type, resolved_.port_name(writer),
+                                 resolved_.port_name(reader), topic.qos.profile.name,
                                  !types_agree      ? "reads another type: " + info(reader).type
                                  : verdict.empty() ? "ok"
                                                    : verdict});
@@ -254,18 +254,19 @@ class Judge {
     const QosProfile& given = topic.qos.profile;
     const QosProfile declared = builtin_profile(wanted.profile()).value_or(QosProfile{});
     if (wanted.max_age() != forever && given.durability == Durability::transient_local)
-      return {Severity::error,
-              "it accepts samples up to " + duration_text(wanted.max_age()) + " old, but on a transient local topic (" +
-                  given_value(topic, "durability") + ") an old sample looks fresh to a late joiner"};
+      return {Severity::error, "it accepts samples up to " + duration_text(wanted.max_age()) +
+                                   " old, but on a transient local topic (" + given_value(topic, "durability") +
+                                   ") an old sample looks fresh to a late joiner"};
     if (wanted.deadline() != forever && given.deadline > wanted.deadline())
-      return {Severity::error, "it requires a deadline of " + duration_text(wanted.deadline()) + " or shorter, but the topic's is " +
-                                   given_value(topic, "deadline")};
+      return {Severity::error, "it requires a deadline of " + duration_text(wanted.deadline()) +
+                                   " or shorter, but the topic's is " + given_value(topic, "deadline")};
     if (declared.durability == Durability::transient_local && given.durability == Durability::volatile_)
-      return {Severity::error, "it requires durability transient_local, but the topic's is " + given_value(topic, "durability") +
+      return {Severity::error, "it requires durability transient_local, but the topic's is " +
+                                   given_value(topic, "durability") +
                                    ": a sample from before it started would never arrive"};
     if (declared.reliability == Reliability::reliable && given.reliability == Reliability::best_effort)
-      return {Severity::warning, "it expects a reliable topic, but its reliability is " + given_value(topic, "reliability") +
-                                     ": samples may be lost"};
+      return {Severity::warning, "it expects a reliable topic, but its reliability is " +
+                                     given_value(topic, "reliability") + ": samples may be lost"};
     if (given.depth == 0 && !resolved_.components[reader.component].manifest.own_thread)
       return {Severity::warning, "the topic keeps all samples (depth " + given_value(topic, "depth") +
                                      "): while this component is stopped, its writers can be held up"};

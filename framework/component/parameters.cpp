@@ -58,18 +58,20 @@ std::optional<Trouble> check_choice(const ParameterInfo& info, const Value& valu
   if (word == nullptr) return wrong_type(info, value);
   if (std::find(info.choices.begin(), info.choices.end(), *word) != info.choices.end()) return std::nullopt;
   const auto near = nearest(*word, info.choices);
-  return Trouble{"", to_text(value) + " is not one of " + joined(info.choices) +
-                         (near ? "; did you mean '" + *near + "'?" : "")};
+  return Trouble{
+      "", to_text(value) + " is not one of " + joined(info.choices) + (near ? "; did you mean '" + *near + "'?" : "")};
 }
 
 /// Every item of a list as `kind`; `count` items if it is not 0.
-std::optional<Trouble> check_items(const ParameterInfo& info, const Value& value, ParameterKind kind, std::size_t count) {
+std::optional<Trouble> check_items(const ParameterInfo& info, const Value& value, ParameterKind kind,
+                                   std::size_t count) {
   const auto* list = std::get_if<ValueList>(&value);
   if (list == nullptr || (count != 0 && list->size() != count)) return wrong_type(info, value);
   ParameterInfo item = info;
   item.kind = kind;
   for (std::size_t i = 0; i < list->size(); ++i)
-    if (auto trouble = check(item, (*list)[i])) return Trouble{"[" + std::to_string(i) + "]" + trouble->where, trouble->message};
+    if (auto trouble = check(item, (*list)[i]))
+      return Trouble{"[" + std::to_string(i) + "]" + trouble->where, trouble->message};
   return std::nullopt;
 }
 
@@ -87,10 +89,12 @@ std::optional<Trouble> check_members(const std::vector<ParameterInfo>& schema, c
   std::vector<std::string> names;
   for (const ParameterInfo& info : schema) names.push_back(info.name);
   for (const auto& [name, value] : values) {
-    const auto info = std::find_if(schema.begin(), schema.end(), [&](const ParameterInfo& i) { return i.name == name; });
+    const auto info =
+        std::find_if(schema.begin(), schema.end(), [&](const ParameterInfo& i) { return i.name == name; });
     if (info == schema.end()) {
       const auto near = nearest(name, names);
-      return Trouble{"." + name, "there is no such parameter" + (near ? "; did you mean '" + *near + "'?" : std::string()) +
+      return Trouble{"." + name, "there is no such parameter" +
+                                     (near ? "; did you mean '" + *near + "'?" : std::string()) +
                                      (near ? " allowed: " : "; allowed: ") + joined(names)};
     }
     if (value.empty()) {
@@ -100,7 +104,8 @@ std::optional<Trouble> check_members(const std::vector<ParameterInfo>& schema, c
     if (auto trouble = check(*info, value)) return Trouble{"." + name + trouble->where, trouble->message};
   }
   for (const ParameterInfo& info : schema)
-    if (complete && info.required && !values.contains(info.name)) return Trouble{"." + info.name, "is missing: " + info.help};
+    if (complete && info.required && !values.contains(info.name))
+      return Trouble{"." + info.name, "is missing: " + info.help};
   return std::nullopt;
 }
 
@@ -110,7 +115,8 @@ std::optional<Trouble> check_records(const ParameterInfo& info, const Value& val
   for (const auto& [name, record] : *records) {
     const auto* members = std::get_if<ValueMap>(&record);
     if (members == nullptr) return Trouble{"." + name, "expected a map, found " + to_text(record)};
-    if (auto trouble = check_members(info.members, *members, true)) return Trouble{"." + name + trouble->where, trouble->message};
+    if (auto trouble = check_members(info.members, *members, true))
+      return Trouble{"." + name + trouble->where, trouble->message};
   }
   return std::nullopt;
 }
@@ -122,7 +128,8 @@ std::optional<Trouble> check(const ParameterInfo& info, const Value& value) {
       return wrong_type(info, value);
     case ParameterKind::integer:
     case ParameterKind::number:
-    case ParameterKind::duration: return check_number(info, value);
+    case ParameterKind::duration:
+      return check_number(info, value);
     case ParameterKind::text:
       if (std::holds_alternative<std::string>(value)) return std::nullopt;
       return wrong_type(info, value);
@@ -132,13 +139,20 @@ std::optional<Trouble> check(const ParameterInfo& info, const Value& value) {
       if (path->empty()) return Trouble{"", "the name of the file is empty"};
       return std::nullopt;
     }
-    case ParameterKind::choice: return check_choice(info, value);
-    case ParameterKind::numbers: return check_items(info, value, ParameterKind::number, 0);
-    case ParameterKind::texts: return check_items(info, value, ParameterKind::text, 0);
-    case ParameterKind::pose: return check_items(info, value, ParameterKind::number, 3);
-    case ParameterKind::points: return check_tuples(info, value, ParameterKind::number);
-    case ParameterKind::pairs: return check_tuples(info, value, ParameterKind::integer);
-    case ParameterKind::records: return check_records(info, value);
+    case ParameterKind::choice:
+      return check_choice(info, value);
+    case ParameterKind::numbers:
+      return check_items(info, value, ParameterKind::number, 0);
+    case ParameterKind::texts:
+      return check_items(info, value, ParameterKind::text, 0);
+    case ParameterKind::pose:
+      return check_items(info, value, ParameterKind::number, 3);
+    case ParameterKind::points:
+      return check_tuples(info, value, ParameterKind::number);
+    case ParameterKind::pairs:
+      return check_tuples(info, value, ParameterKind::integer);
+    case ParameterKind::records:
+      return check_records(info, value);
   }
   return std::nullopt;
 }
@@ -153,7 +167,8 @@ std::size_t edits(const std::string& a, const std::string& b) {
   for (std::size_t j = 0; j <= b.size(); ++j) cost[0][j] = j;
   for (std::size_t i = 1; i <= a.size(); ++i) {
     for (std::size_t j = 1; j <= b.size(); ++j) {
-      cost[i][j] = std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1)});
+      cost[i][j] =
+          std::min({cost[i - 1][j] + 1, cost[i][j - 1] + 1, cost[i - 1][j - 1] + (same(a[i - 1], b[j - 1]) ? 0 : 1)});
       if (i > 1 && j > 1 && same(a[i - 1], b[j - 2]) && same(a[i - 2], b[j - 1]))
         cost[i][j] = std::min(cost[i][j], cost[i - 2][j - 2] + 1);
     }
@@ -165,19 +180,32 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::string to_text(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::boolean: return "true or false";
-    case ParameterKind::integer: return "integer";
-    case ParameterKind::number: return "number";
-    case ParameterKind::duration: return "duration";
-    case ParameterKind::text: return "text";
-    case ParameterKind::choice: return "choice";
-    case ParameterKind::path: return "path of a file";
-    case ParameterKind::numbers: return "list of numbers";
-    case ParameterKind::texts: return "list of texts";
-    case ParameterKind::pose: return "[x, y, yaw]";
-    case ParameterKind::points: return "list of [x, y]";
-    case ParameterKind::pairs: return "list of [i, j]";
-    case ParameterKind::records: return "map of records";
+    case ParameterKind::boolean:
+      return "true or false";
+    case ParameterKind::integer:
+      return "integer";
+    case ParameterKind::number:
+      return "number";
+    case ParameterKind::duration:
+      return "duration";
+    case ParameterKind::text:
+      return "text";
+    case ParameterKind::choice:
+      return "choice";
+    case ParameterKind::path:
+      return "path of a file";
+    case ParameterKind::numbers:
+      return "list of numbers";
+    case ParameterKind::texts:
+      return "list of texts";
+    case ParameterKind::pose:
+      return "[x, y, yaw]";
+    case ParameterKind::points:
+      return "list of [x, y]";
+    case ParameterKind::pairs:
+      return "list of [i, j]";
+    case ParameterKind::records:
+      return "map of records";
   }
   return "";
 }
@@ -190,7 +218,8 @@ std::optional<std::string> refusal(const ParameterInfo& info, const Value& value
 }
 
 void validate(const std::vector<ParameterInfo>& schema, const ValueMap& values, bool complete) {
-  if (const auto trouble = check_members(schema, values, complete)) throw ParameterError(trouble->where.substr(1), trouble->message);
+  if (const auto trouble = check_members(schema, values, complete))
+    throw ParameterError(trouble->where.substr(1), trouble->message);
 }
 
 std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& known) {

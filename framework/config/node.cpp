@@ -11,10 +11,14 @@ namespace {
 
 const char* to_text(Kind kind) {
   switch (kind) {
-    case Kind::null: return "nothing";
-    case Kind::scalar: return "a single value";
-    case Kind::list: return "a list";
-    case Kind::map: return "a map";
+    case Kind::null:
+      return "nothing";
+    case Kind::scalar:
+      return "a single value";
+    case Kind::list:
+      return "a list";
+    case Kind::map:
+      return "a map";
   }
   return "";
 }
@@ -66,8 +70,7 @@ const Node& Node::required(std::string_view key) const {
 void Node::only_keys(const std::vector<std::string>& allowed) const {
   for (const Node& child : map()) {
     if (std::find(allowed.begin(), allowed.end(), child.name) != allowed.end()) continue;
-    throw ConfigError(child.key_location, "unknown key '" + child.name + "'" + did_you_mean(child.name, allowed) +
-                                              (nearest(child.name, allowed) ? " allowed: " : "; allowed: ") + joined(allowed));
+    throw ConfigError(child.key_location, "unknown key '" + child.name + "'" + hint(child.name, allowed, "allowed"));
   }
 }
 
@@ -77,7 +80,8 @@ bool Node::as_bool() const {
   if (text == "true") return true;
   if (text == "false") return false;
   if (const auto meant = meant_as_bool(text))
-    fail("'" + text + "' is not a boolean; write " + (*meant ? "true" : "false") + " (only true and false are booleans)");
+    fail("'" + text + "' is not a boolean; write " + (*meant ? "true" : "false") +
+         " (only true and false are booleans)");
   fail("expected true or false, found " + shown());
 }
 
@@ -179,7 +183,9 @@ void Node::fail_at_key(const std::string& message) const { throw ConfigError(key
 
 std::string Node::shown() const {
   if (!is_scalar()) return to_text(kind);
-  const std::string value = quoted ? '"' + text + '"' : text.empty() ? "an empty text" : text;
+  constexpr std::size_t longest = 60;
+  const std::string seen = text.size() > longest ? text.substr(0, longest) + "..." : text;
+  const std::string value = quoted ? '"' + seen + '"' : text.empty() ? "an empty text" : seen;
   return written.empty() ? value : value + " (from " + written + ")";
 }
 
@@ -196,6 +202,11 @@ Node scalar(std::string text, std::string name, std::string origin) {
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& known) {
   const auto near = nearest(word, known);
   return near ? "; did you mean '" + *near + "'?" : "";
+}
+
+std::string hint(const std::string& word, const std::vector<std::string>& known, const std::string& label) {
+  const std::string meant = did_you_mean(word, known);
+  return (meant.empty() ? ";" : meant) + " " + label + ": " + joined(known);
 }
 
 std::string joined(const std::vector<std::string>& words) {

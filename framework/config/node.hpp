@@ -24,13 +24,13 @@ enum class Kind { null, scalar, list, map };
 /// value is not what they promise; none of them guesses.
 struct Node {
   Kind kind = Kind::null;
-  std::string name;                ///< its key in a map, `start[2]` in a list, empty at the top
-  std::string text;                ///< of a scalar, without quotes
-  bool quoted = false;             ///< a quoted scalar is a text, never a number or a boolean
-  std::string written;             ///< what stood here before `${arg}` was replaced; empty if nothing was
-  Location location;               ///< where the value begins
-  Location key_location;           ///< where its key begins; the value's own place outside of a map
-  std::vector<Node> children = {}; ///< of a list or a map, in the file's order
+  std::string name;                 ///< its key in a map, `start[2]` in a list, empty at the top
+  std::string text;                 ///< of a scalar, without quotes
+  bool quoted = false;              ///< a quoted scalar is a text, never a number or a boolean
+  std::string written;              ///< what stood here before `${arg}` was replaced; empty if nothing was
+  Location location;                ///< where the value begins
+  Location key_location;            ///< where its key begins; the value's own place outside of a map
+  std::vector<Node> children = {};  ///< of a list or a map, in the file's order
 
   bool is_map() const { return kind == Kind::map; }
   bool is_list() const { return kind == Kind::list; }
@@ -74,8 +74,8 @@ struct Node {
 /// A scalar that was not read from a file, such as a command line argument; `origin` stands where a file would.
 Node scalar(std::string text, std::string name, std::string origin);
 
-/// Reads a file, strictly: YAML without anchors, aliases, tags, merge keys, duplicate keys, tabs as indentation and second
-/// documents. Throws ConfigError. `shown_as` is the name in messages, the path itself unless given.
+/// Reads a file, strictly: YAML without anchors, aliases, tags, merge keys, duplicate keys, tabs as indentation and
+/// second documents. Throws ConfigError. `shown_as` is the name in messages, the path itself unless given.
 Node load(const std::string& path, const std::string& shown_as = {});
 
 /// The same for a text in memory.
@@ -83,6 +83,10 @@ Node parse(const std::string& text, const std::string& shown_as);
 
 /// "; did you mean 'color'?" if one of `known` is near `word`, else nothing.
 std::string did_you_mean(const std::string& word, const std::vector<std::string>& known);
+
+/// The end of a message about an unknown `word`: "; did you mean 'color'? allowed: color, size", or without a near one
+/// "; allowed: color, size". `label` introduces the list.
+std::string hint(const std::string& word, const std::vector<std::string>& known, const std::string& label);
 
 /// "a, b, c", for lists of what is allowed; "none" if there is nothing.
 std::string joined(const std::vector<std::string>& words);

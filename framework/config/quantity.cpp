@@ -143,10 +143,12 @@ std::variant<double, std::string> parse_quantity(std::string_view text, std::str
   const std::string_view number = text.substr(0, length);
   const std::string_view unit = trimmed(text.substr(length));
   if (length == 0)
-    return quoted(text) + " is not " + std::string(dimension.what) + "; write a number and a unit, e.g. 1 " + std::string(si);
+    return quoted(text) + " is not " + std::string(dimension.what) + "; write a number and a unit, e.g. 1 " +
+           std::string(si);
   const auto value = value_of(number);
   if (!std::holds_alternative<double>(value)) return value;
-  if (unit.empty()) return std::string(number) + " has no unit; write e.g. " + std::string(number) + " " + std::string(si);
+  if (unit.empty())
+    return std::string(number) + " has no unit; write e.g. " + std::string(number) + " " + std::string(si);
   for (const Unit& known : dimension.units)
     if (known.name == unit) return std::get<double>(value) * known.factor;
   return std::string(text) + " is not " + std::string(dimension.what) + "; allowed units: " + unit_list(dimension);

@@ -8,8 +8,8 @@
 
 namespace kervan::config {
 
-/// The units in which a quantity with the SI unit `si` may be written, the SI unit first. A unit that the table does not
-/// hold may only be written as it is.
+/// The units in which a quantity with the SI unit `si` may be written, the SI unit first. A unit that the table does
+/// not hold may only be written as it is.
 std::vector<std::string> units_of(std::string_view si);
 
 /// The value in SI units, or one sentence that says what is wrong with `text`.

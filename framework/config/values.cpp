@@ -31,12 +31,24 @@ ParameterInfo item_of(const ParameterInfo& info, ParameterKind kind) {
 Value to_value(const Node& node, const ParameterInfo& info, const FindFile& find_file) {
   Value value;
   switch (info.kind) {
-    case ParameterKind::boolean: value = node.as_bool(); break;
-    case ParameterKind::integer: value = node.as_integer(); break;
-    case ParameterKind::number: value = node.as_quantity(info.unit); break;
-    case ParameterKind::duration: value = seconds(node.as_duration()); break;
-    case ParameterKind::text: value = node.as_text(); break;
-    case ParameterKind::choice: value = node.as_choice(info.choices); break;
+    case ParameterKind::boolean:
+      value = node.as_bool();
+      break;
+    case ParameterKind::integer:
+      value = node.as_integer();
+      break;
+    case ParameterKind::number:
+      value = node.as_quantity(info.unit);
+      break;
+    case ParameterKind::duration:
+      value = seconds(node.as_duration());
+      break;
+    case ParameterKind::text:
+      value = node.as_text();
+      break;
+    case ParameterKind::choice:
+      value = node.as_choice(info.choices);
+      break;
     case ParameterKind::path:
       value = node.as_text();
       check(node, info, value);
@@ -76,7 +88,8 @@ Value to_value(const Node& node, const ParameterInfo& info, const FindFile& find
     }
     case ParameterKind::records: {
       ValueMap records;
-      for (const Node& record : node.map()) records[record.name] = to_values(record, info.members, info.name, find_file);
+      for (const Node& record : node.map())
+        records[record.name] = to_values(record, info.members, info.name, find_file);
       value = std::move(records);
       break;
     }
@@ -94,8 +107,7 @@ ValueMap to_values(const Node& params, const std::vector<ParameterInfo>& schema,
     for (const ParameterInfo& candidate : schema)
       if (candidate.name == given.name) info = &candidate;
     if (info == nullptr)
-      given.fail_at_key(of + " has no parameter '" + given.name + "'" + did_you_mean(given.name, known) +
-                        (nearest(given.name, known) ? " it has: " : "; it has: ") + joined(known));
+      given.fail_at_key(of + " has no parameter '" + given.name + "'" + hint(given.name, known, "it has"));
     values[given.name] = to_value(given, *info, find_file);
   }
   for (const ParameterInfo& info : schema)

@@ -39,7 +39,8 @@ class TreeBuilder final : public YAML::EventHandler {
     throw ConfigError(at(mark), "aliases (*name) are not allowed; write the value out, or use a template");
   }
 
-  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& text) override {
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& text) override {
     refuse_anchor(mark, anchor);
     // The parser names plain scalars "?" and quoted ones "!"; anything else was written by a person.
     if (tag != "?" && tag != "!" && !tag.empty()) refuse_tag(mark, tag);
@@ -58,7 +59,8 @@ class TreeBuilder final : public YAML::EventHandler {
                        YAML::EmitterStyle::value) override {
     open(Kind::list, mark, tag, anchor);
   }
-  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
     open(Kind::map, mark, tag, anchor);
   }
   void OnSequenceEnd() override { close(); }
@@ -90,8 +92,8 @@ class TreeBuilder final : public YAML::EventHandler {
     if (key.empty()) throw ConfigError(at(mark), "a key is missing before the colon");
     for (const Node& known : map.node.children)
       if (known.name == key)
-        throw ConfigError(at(mark),
-                          "duplicate key '" + key + "'; it was first given at line " + std::to_string(known.key_location.line));
+        throw ConfigError(at(mark), "duplicate key '" + key + "'; it was first given at line " +
+                                        std::to_string(known.key_location.line));
     map.key = key;
     map.key_location = at(mark);
     map.has_key = true;

@@ -10,8 +10,8 @@
 namespace kervan {
 
 /// Each word is mixed in by a multiplication to 128 bits whose halves are folded together: every bit of the word and of
-/// the state reaches every bit of the next state. It is a sink (cdr.hpp), so cdr::put hashes a whole message: strings and
-/// sequences with their lengths, floating-point numbers by their bits (0.0 and -0.0 differ).
+/// the state reaches every bit of the next state. It is a sink (cdr.hpp), so cdr::put hashes a whole message: strings
+/// and sequences with their lengths, floating-point numbers by their bits (0.0 and -0.0 differ).
 class [[gnu::visibility("default")]] Hash64 {
  public:
   constexpr explicit Hash64(std::uint64_t seed = 0) : state_(seed ^ 0x9e3779b97f4a7c15U) {}
@@ -21,7 +21,7 @@ class [[gnu::visibility("default")]] Hash64 {
   constexpr void word(std::uint64_t value) { state_ = fold(state_ ^ value, 0xa0761d6478bd642fU) + 0xe7037ed1a0b428dbU; }
 
   template <class T>
-    requires std::is_arithmetic_v<T>
+  requires std::is_arithmetic_v<T>
   constexpr void number(T value) {
     if constexpr (std::is_floating_point_v<T>) {
       using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
@@ -32,17 +32,15 @@ class [[gnu::visibility("default")]] Hash64 {
   }
 
   template <class T>
-    requires std::is_arithmetic_v<T>
-  void numbers(const T* values, std::size_t count) {
-    bytes(values, count * sizeof(T));
-  }
+  requires std::is_arithmetic_v<T>
+  void numbers(const T* values, std::size_t count) { bytes(values, count * sizeof(T)); }
 
   void text(std::string_view value) {
     word(value.size());
     bytes(value.data(), value.size());
   }
 
-  /// Eight bytes at a time. The length is not part of the hash: add it where the bytes' end is not otherwise known.
+  /// Sixteen bytes at a time. The length is not part of the hash: add it where the bytes' end is not otherwise known.
   void bytes(const void* data, std::size_t size);
 
  private:

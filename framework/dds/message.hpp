@@ -31,7 +31,9 @@ struct AnyVisitor {
 
 /// A generated struct.
 template <class T>
-concept Message = requires(T& message) { fields(detail::AnyVisitor{}, message); };
+concept Message = requires(T& message) {
+  fields(detail::AnyVisitor{}, message);
+};
 
 /// A list of message types; the generated <package>/all_types.hpp has one with every struct of the package.
 template <class... T>

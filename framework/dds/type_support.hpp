@@ -16,8 +16,8 @@ struct TypeSupport {
   const char* name;       ///< as in IDL: "sensor_msgs::msg::LaserScan"
   const char* wire_name;  ///< as ROS 2 has it: "sensor_msgs::msg::dds_::LaserScan_"
 
-  /// FNV-1a over names, types, keys and units of all members, nested ones included. Two libraries that give the same name
-  /// another hash disagree on what the bytes mean.
+  /// FNV-1a over names, types, keys and units of all members, nested ones included. Two libraries that give the same
+  /// name another hash disagree on what the bytes mean.
   std::uint64_t layout_hash;
 
   const void* descriptor;  ///< idlc's dds_topic_descriptor_t; null for a @nested struct, which cannot be a topic
@@ -26,7 +26,7 @@ struct TypeSupport {
   std::size_t size;       ///< of the C++ value
   std::size_t alignment;  ///< of the C++ value
 
-  void (*construct)(void* memory);           ///< a fresh value: all zero and empty
+  void (*construct)(void* memory);  ///< a fresh value: all zero and empty
   void (*destroy)(void* value);
   void (*reset)(void* value);                ///< as fresh, but strings and vectors keep their capacity
   void (*copy)(void* to, const void* from);  ///< both are values; strings and vectors of `to` keep their capacity
@@ -41,8 +41,8 @@ struct TypeSupport {
   /// CDR of the key members alone; nothing if the type has no key. Equal keys have equal bytes.
   std::size_t (*cdr_key_size)(const void* value);
   void (*write_key)(const void* value, cdr::Writer& writer);
-  bool (*read_key)(void* value, cdr::Reader& reader);          ///< other members stay as they are
-  void (*key_bytes)(const void* value, std::string& out);      ///< the key in big endian, which the key hash is made of
+  bool (*read_key)(void* value, cdr::Reader& reader);      ///< other members stay as they are
+  void (*key_bytes)(const void* value, std::string& out);  ///< the key in big endian, which the key hash is made of
 
   void (*hash)(const void* value, Hash64& hash);         ///< every member
   void (*to_json)(const void* value, std::string& out);  ///< appends; compact; NaN and infinities are null

@@ -11,12 +11,14 @@ typedef struct checker {
   const idl_pstate_t *state;
   const char *file; /* being compiled, in the ROS 2 layout, without the suffix */
   int refusals;
+  bool has_main_struct; /* of the file's own name, by which the package's list of types finds it */
 } checker_t;
 
 #if defined(__GNUC__)
 __attribute__((format(printf, 3, 4)))
 #endif
-static void refuse(checker_t *checker, const void *symbol, const char *format, ...) {
+static void
+refuse(checker_t *checker, const void *symbol, const char *format, ...) {
   const idl_position_t *place = &idl_location(symbol)->first;
   fprintf(stderr, "%s:%" PRIu32 ":%" PRIu32 ": error: ", place->file->name, place->line, place->column);
   va_list arguments;
@@ -34,17 +36,32 @@ static bool is_one_of(const char *word, const char *const *words) {
 }
 
 /* Words idlc lets through and a C or C++ compiler does not: keywords, and macros of the standard headers. */
-static const char *const reserved[] = {
-    "alignas", "alignof", "and", "and_eq", "asm", "assert", "auto", "bitand", "bitor", "bool", "break", "case", "catch",
-    "char", "char16_t", "char32_t", "char8_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const",
-    "const_cast", "consteval", "constexpr", "constinit", "continue", "decltype", "default", "delete", "do", "double",
-    "dynamic_cast", "else", "enum", "EOF", "errno", "explicit", "export", "extern", "false", "float", "for", "friend",
-    "goto", "if", "inline", "int", "linux", "long", "mutable", "namespace", "new", "noexcept", "not", "not_eq", "NULL",
-    "nullptr", "operator", "or", "or_eq", "private", "protected", "public", "register", "reinterpret_cast", "requires",
-    "restrict", "return", "short", "signed", "sizeof", "static", "static_assert", "static_cast", "stderr", "stdin",
-    "stdout", "struct", "switch", "template", "this", "thread_local", "throw", "true", "try", "typedef", "typeid",
-    "typename", "typeof", "union", "unix", "unsigned", "using", "virtual", "void", "volatile", "wchar_t", "while", "xor",
-    "xor_eq", NULL};
+static const char *const reserved[] = {"alignas",      "alignof",   "and",          "and_eq",
+                                       "asm",          "assert",    "auto",         "bitand",
+                                       "bitor",        "bool",      "break",        "case",
+                                       "catch",        "char",      "char16_t",     "char32_t",
+                                       "char8_t",      "class",     "co_await",     "co_return",
+                                       "co_yield",     "compl",     "concept",      "const",
+                                       "const_cast",   "consteval", "constexpr",    "constinit",
+                                       "continue",     "decltype",  "default",      "delete",
+                                       "do",           "double",    "dynamic_cast", "else",
+                                       "enum",         "EOF",       "errno",        "explicit",
+                                       "export",       "extern",    "false",        "float",
+                                       "for",          "friend",    "goto",         "if",
+                                       "inline",       "int",       "linux",        "long",
+                                       "mutable",      "namespace", "new",          "noexcept",
+                                       "not",          "not_eq",    "NULL",         "nullptr",
+                                       "operator",     "or",        "or_eq",        "private",
+                                       "protected",    "public",    "register",     "reinterpret_cast",
+                                       "requires",     "restrict",  "return",       "short",
+                                       "signed",       "sizeof",    "static",       "static_assert",
+                                       "static_cast",  "stderr",    "stdin",        "stdout",
+                                       "struct",       "switch",    "template",     "this",
+                                       "thread_local", "throw",     "true",         "try",
+                                       "typedef",      "typeid",    "typename",     "typeof",
+                                       "union",        "unix",      "unsigned",     "using",
+                                       "virtual",      "void",      "volatile",     "wchar_t",
+                                       "while",        "xor",       "xor_eq",       NULL};
 
 /* Names of the functions every message has beside it. */
 static const char *const taken[] = {"fields", "is_valid", "to_string", NULL};
@@ -71,8 +88,9 @@ static void check_annotations(checker_t *checker, const void *node, const char *
     const char *name = annotation->annotation->name->identifier;
     if (is_one_of(name, supported)) continue;
     if (strcmp(name, "optional") == 0)
-      refuse(checker, annotation, "@optional is not supported, ROS 2 readers cannot match it: use a sequence of at most "
-                                  "one element, or a boolean member beside the value");
+      refuse(checker, annotation,
+             "@optional is not supported, ROS 2 readers cannot match it: use a sequence of at most "
+             "one element, or a boolean member beside the value");
     else if (strcmp(name, "external") == 0)
       refuse(checker, annotation, "@external is not supported: leave it out, the value is stored in place");
     else if (strcmp(name, "bit_bound") == 0)
@@ -94,12 +112,14 @@ static void check_type(checker_t *checker, const void *place, const idl_type_spe
     if (((const idl_sequence_t *)type)->maximum)
       refuse(checker, place, "%s: bounded sequences are not supported: use sequence<T> or an array", what);
     if (idl_type(element) == IDL_BOOL)
-      refuse(checker, place, "%s: sequence<boolean> is not supported, C++ packs it into bits: use sequence<octet>", what);
+      refuse(checker, place, "%s: sequence<boolean> is not supported, C++ packs it into bits: use sequence<octet>",
+             what);
     check_type(checker, place, element, what);
   } else if (idl_is_bounded_string(type)) {
     refuse(checker, place, "%s: bounded strings are not supported: use string", what);
   } else if (idl_is_union(type)) {
-    refuse(checker, place, "%s: unions are not supported: use a struct with an enum that says which members hold", what);
+    refuse(checker, place, "%s: unions are not supported: use a struct with an enum that says which members hold",
+           what);
   } else if (idl_is_bitmask(type)) {
     refuse(checker, place, "%s: bitmasks are not supported: use uint32 and constants", what);
   } else if (idl_type(type) == IDL_WCHAR || idl_type(type) == IDL_WSTRING) {
@@ -154,8 +174,8 @@ static void check_struct(checker_t *checker, const idl_struct_t *type) {
     const idl_name_t *place = field.declarator->name;
     check_name(checker, field.declarator, "member");
     if (is_one_of(name, annotations))
-      refuse(checker, place, "member '%s' hides the annotation @%s: choose another name, ROS 2 compares types, not names",
-             name, name);
+      refuse(checker, place,
+             "member '%s' hides the annotation @%s: choose another name, ROS 2 compares types, not names", name, name);
 
     what.length = 0;
     text_add(&what, "member '%s'", name);
@@ -163,8 +183,10 @@ static void check_struct(checker_t *checker, const idl_struct_t *type) {
 
     const idl_type_spec_t *element = element_type(field.member->type_spec);
     if (idl_is_floating_pt_type(element) && !field.member->unit.annotation)
-      refuse(checker, place, "member '%s' has no unit: write @unit(\"m\"), or whichever it is, before its type, and "
-                             "@unit(\"1\") for a pure number", name);
+      refuse(checker, place,
+             "member '%s' has no unit: write @unit(\"m\"), or whichever it is, before its type, and "
+             "@unit(\"1\") for a pure number",
+             name);
     if (field.member->key.value) {
       if (idl_is_array(field.declarator))
         refuse(checker, place, "@key on '%s': a key is an integer, boolean, enum, string, or a struct of these", name);
@@ -216,15 +238,19 @@ static void check_definition(const void *node, void *argument) {
     refuse(checker, node, "%s outside of a module: put it into `module <package> { module msg { ... }; };`",
            idl_construct(node));
   } else if (!is_in_folders(checker->file, scope.data)) {
-    refuse(checker, node, "module %s in the file %s.idl: modules and folders must agree, as in <package>/msg/<Name>.idl",
-           scope.data, checker->file);
+    refuse(checker, node,
+           "module %s in the file %s.idl: modules and folders must agree, as in <package>/msg/<Name>.idl", scope.data,
+           checker->file);
   }
   text_free(&scope);
 
   if (idl_is_forward(node)) {
-    refuse(checker, node, "forward declarations are not supported: define the struct before it is used, and let a tree "
-                          "refer to its nodes by index");
+    refuse(checker, node,
+           "forward declarations are not supported: define the struct before it is used, and let a tree "
+           "refer to its nodes by index");
   } else if (idl_is_struct(node)) {
+    const char *name = strrchr(checker->file, '/');
+    if (strcmp(idl_identifier(node), name ? name + 1 : checker->file) == 0) checker->has_main_struct = true;
     check_struct(checker, node);
   } else if (idl_is_enum(node)) {
     check_enum(checker, node);
@@ -252,9 +278,18 @@ static void check_module_names(checker_t *checker, const void *first) {
 int check(const idl_pstate_t *state) {
   text_t file = {NULL, 0, 0};
   add_file_name(&file, state->sources->path->name);
-  checker_t checker = {state, file.data, 0};
+  checker_t checker = {state, file.data, 0, false};
   check_module_names(&checker, state->root);
   for_each_definition(state, check_definition, &checker);
+  if (!checker.refusals && !checker.has_main_struct) {
+    const char *name = strrchr(file.data, '/');
+    name = name ? name + 1 : file.data;
+    fprintf(stderr,
+            "%s:1:1: error: the file defines no struct '%s': a file has the name of its struct; an enum or constant "
+            "lives with a struct that uses it\n",
+            state->sources->file->name, name);
+    ++checker.refusals;
+  }
   text_free(&file);
   return checker.refusals;
 }

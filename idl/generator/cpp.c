@@ -13,13 +13,20 @@ static const char *base_cpp(const idl_type_spec_t *type) {
     case IDL_BOOL: return "bool";
     case IDL_CHAR: return "char";
     case IDL_INT8: return "std::int8_t";
-    case IDL_OCTET: case IDL_UINT8: return "std::uint8_t";
-    case IDL_SHORT: case IDL_INT16: return "std::int16_t";
-    case IDL_USHORT: case IDL_UINT16: return "std::uint16_t";
-    case IDL_LONG: case IDL_INT32: return "std::int32_t";
-    case IDL_ULONG: case IDL_UINT32: return "std::uint32_t";
-    case IDL_LLONG: case IDL_INT64: return "std::int64_t";
-    case IDL_ULLONG: case IDL_UINT64: return "std::uint64_t";
+    case IDL_OCTET:
+    case IDL_UINT8: return "std::uint8_t";
+    case IDL_SHORT:
+    case IDL_INT16: return "std::int16_t";
+    case IDL_USHORT:
+    case IDL_UINT16: return "std::uint16_t";
+    case IDL_LONG:
+    case IDL_INT32: return "std::int32_t";
+    case IDL_ULONG:
+    case IDL_UINT32: return "std::uint32_t";
+    case IDL_LLONG:
+    case IDL_INT64: return "std::int64_t";
+    case IDL_ULLONG:
+    case IDL_UINT64: return "std::uint64_t";
     case IDL_FLOAT: return "float";
     case IDL_DOUBLE: return "double";
     default: return "void";
@@ -97,16 +104,23 @@ static void add_constant(text_t *out, const idl_const_t *constant) {
       case IDL_BOOL: text_add(out, "%s", literal->value.bln ? "true" : "false"); break;
       case IDL_CHAR: text_add(out, "static_cast<char>(%d)", literal->value.chr); break;
       case IDL_INT8: text_add(out, "%d", literal->value.int8); break;
-      case IDL_OCTET: case IDL_UINT8: text_add(out, "%u", literal->value.uint8); break;
-      case IDL_SHORT: case IDL_INT16: text_add(out, "%d", literal->value.int16); break;
-      case IDL_USHORT: case IDL_UINT16: text_add(out, "%u", literal->value.uint16); break;
-      case IDL_LONG: case IDL_INT32: text_add(out, "static_cast<std::int32_t>(%" PRId32 "L)", literal->value.int32); break;
-      case IDL_ULONG: case IDL_UINT32: text_add(out, "%" PRIu32 "U", literal->value.uint32); break;
-      case IDL_LLONG: case IDL_INT64:
+      case IDL_OCTET:
+      case IDL_UINT8: text_add(out, "%u", literal->value.uint8); break;
+      case IDL_SHORT:
+      case IDL_INT16: text_add(out, "%d", literal->value.int16); break;
+      case IDL_USHORT:
+      case IDL_UINT16: text_add(out, "%u", literal->value.uint16); break;
+      case IDL_LONG:
+      case IDL_INT32: text_add(out, "static_cast<std::int32_t>(%" PRId32 "L)", literal->value.int32); break;
+      case IDL_ULONG:
+      case IDL_UINT32: text_add(out, "%" PRIu32 "U", literal->value.uint32); break;
+      case IDL_LLONG:
+      case IDL_INT64:
         /* The least 64-bit number cannot be written as a literal with a minus before it. */
         text_add(out, "static_cast<std::int64_t>(0x%" PRIx64 "ULL)", (uint64_t)literal->value.int64);
         break;
-      case IDL_ULLONG: case IDL_UINT64: text_add(out, "%" PRIu64 "ULL", literal->value.uint64); break;
+      case IDL_ULLONG:
+      case IDL_UINT64: text_add(out, "%" PRIu64 "ULL", literal->value.uint64); break;
       case IDL_FLOAT: add_floating(out, (double)literal->value.flt, 9, "f"); break;
       case IDL_DOUBLE: add_floating(out, literal->value.dbl, 17, ""); break;
       default: break;
@@ -122,13 +136,18 @@ static void add_enum(text_t *out, const idl_enum_t *type) {
     text_add(out, "  %s = %" PRIu32 ",\n", idl_identifier(e), e->value.value);
   text_add(out, "};\n\n");
 
-  text_add(out, "/// Whether the value is one of the enumerators.\nconstexpr bool is_valid(%s value) {\n  switch (value) {\n", name);
+  text_add(
+      out,
+      "/// Whether the value is one of the enumerators.\nconstexpr bool is_valid(%s value) {\n  switch (value) {\n",
+      name);
   for (const idl_enumerator_t *e = type->enumerators; e; e = idl_next(e))
     text_add(out, "    case %s::%s:\n", name, idl_identifier(e));
   text_add(out, "      return true;\n  }\n  return false;\n}\n\n");
 
-  text_add(out, "/// The enumerator's name; empty if there is none of that value.\n"
-                "constexpr std::string_view to_string(%s value) {\n  switch (value) {\n", name);
+  text_add(out,
+           "/// The enumerator's name; empty if there is none of that value.\n"
+           "constexpr std::string_view to_string(%s value) {\n  switch (value) {\n",
+           name);
   for (const idl_enumerator_t *e = type->enumerators; e; e = idl_next(e))
     text_add(out, "    case %s::%s: return \"%s\";\n", name, idl_identifier(e), idl_identifier(e));
   text_add(out, "  }\n  return {};\n}\n");
@@ -149,12 +168,15 @@ static void add_struct(text_t *out, const idl_struct_t *type) {
   }
   text_add(out, "\n  bool operator==(const %s&) const = default;\n};\n\n", name);
 
-  text_add(out, "template <class Visitor, class Message>\n  requires std::is_same_v<std::remove_cv_t<Message>, %s>\n"
-                "constexpr void fields(Visitor&& visit, Message& message) {\n", name);
+  text_add(out,
+           "template <class Visitor, class Message>\n  requires std::is_same_v<std::remove_cv_t<Message>, %s>\n"
+           "constexpr void fields(Visitor&& visit, Message& message) {\n",
+           name);
   for (field_t field = {NULL, NULL}; next_field(type, &field);) {
     text_add(out, "  visit(::kervan::Field{\"%s\", ", idl_identifier(field.declarator));
     add_quoted(out, field.member->unit.annotation ? field.member->unit.value : "");
-    text_add(out, ", %s}, message.%s);\n", field.member->key.value ? "true" : "false", idl_identifier(field.declarator));
+    text_add(out, ", %s}, message.%s);\n", field.member->key.value ? "true" : "false",
+             idl_identifier(field.declarator));
   }
   text_add(out, "}\n");
 }
@@ -208,8 +230,9 @@ static void add_type_support_declaration(const void *node, void *argument) {
 void add_header(text_t *out, const idl_pstate_t *state, const char *self) {
   writer_t writer = {out, state};
   text_add(out, "// Generated from %s.idl; do not edit.\n#pragma once\n\n", self);
-  text_add(out, "#include <array>\n#include <cstdint>\n#include <string>\n#include <string_view>\n#include <type_traits>\n"
-                "#include <vector>\n\n#include \"framework/dds/message.hpp\"\n");
+  text_add(out,
+           "#include <array>\n#include <cstdint>\n#include <string>\n#include <string_view>\n#include <type_traits>\n"
+           "#include <vector>\n\n#include \"framework/dds/message.hpp\"\n");
   for (const idl_source_t *source = state->sources->includes; source; source = source->next) {
     text_add(out, "#include \"");
     add_file_name(out, source->path->name);

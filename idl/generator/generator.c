@@ -1,5 +1,7 @@
 /* The back end that idlc loads with `-l libcycloneddsidlkervan.so`. For pkg/msg/Name.idl it writes pkg/msg/Name.hpp,
    Name.cpp and Name.d (the IDL files it depends on, for the build). If anything is refused it writes nothing. */
+#include "idlc/generator.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +9,6 @@
 #include "check.h"
 #include "cpp.h"
 #include "idl/file.h"
-#include "idlc/generator.h"
 
 static char *output_path(const idl_pstate_t *state, const idlc_generator_config_t *config, const char *suffix) {
   char *path = NULL;
@@ -66,9 +67,8 @@ int generate(const idl_pstate_t *state, const idlc_generator_config_t *config) {
   char *header = output_path(state, config, "hpp");
   char *source = output_path(state, config, "cpp");
   char *dependencies = output_path(state, config, "d");
-  const int result = header && source && dependencies
-                         ? generate_files(state, header, source, dependencies, self.data)
-                         : IDL_RETCODE_NO_MEMORY;
+  const int result = header && source && dependencies ? generate_files(state, header, source, dependencies, self.data)
+                                                      : IDL_RETCODE_NO_MEMORY;
   free(header);
   free(source);
   free(dependencies);

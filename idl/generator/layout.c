@@ -7,13 +7,20 @@ static const char *base_layout(const idl_type_spec_t *type) {
     case IDL_BOOL: return "bool";
     case IDL_CHAR: return "char";
     case IDL_INT8: return "i8";
-    case IDL_OCTET: case IDL_UINT8: return "u8";
-    case IDL_SHORT: case IDL_INT16: return "i16";
-    case IDL_USHORT: case IDL_UINT16: return "u16";
-    case IDL_LONG: case IDL_INT32: return "i32";
-    case IDL_ULONG: case IDL_UINT32: return "u32";
-    case IDL_LLONG: case IDL_INT64: return "i64";
-    case IDL_ULLONG: case IDL_UINT64: return "u64";
+    case IDL_OCTET:
+    case IDL_UINT8: return "u8";
+    case IDL_SHORT:
+    case IDL_INT16: return "i16";
+    case IDL_USHORT:
+    case IDL_UINT16: return "u16";
+    case IDL_LONG:
+    case IDL_INT32: return "i32";
+    case IDL_ULONG:
+    case IDL_UINT32: return "u32";
+    case IDL_LLONG:
+    case IDL_INT64: return "i64";
+    case IDL_ULLONG:
+    case IDL_UINT64: return "u64";
     case IDL_FLOAT: return "f32";
     case IDL_DOUBLE: return "f64";
     default: return "?";

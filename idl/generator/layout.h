@@ -1,4 +1,5 @@
-/* The canonical text of a type's layout, and its hash. Two types with one hash mean the same bytes by the same names. */
+/* The canonical text of a type's layout, and its hash. Two types with one hash mean the same bytes by the same names.
+ */
 #ifndef KERVAN_IDL_LAYOUT_H
 #define KERVAN_IDL_LAYOUT_H
 

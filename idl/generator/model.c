@@ -7,8 +7,8 @@ bool in_main_file(const idl_pstate_t *state, const void *node) {
   return strcmp(location->first.source->path->name, state->sources->path->name) == 0;
 }
 
-static void visit_definitions(const idl_pstate_t *state, const void *first,
-                              void (*visit)(const void *, void *), void *argument) {
+static void visit_definitions(const idl_pstate_t *state, const void *first, void (*visit)(const void *, void *),
+                              void *argument) {
   for (const void *node = first; node; node = idl_next(node)) {
     if (idl_is_module(node))
       visit_definitions(state, ((const idl_module_t *)node)->definitions, visit, argument);

@@ -11,10 +11,12 @@
 bool in_main_file(const idl_pstate_t *state, const void *node);
 
 /* Calls `visit` for each definition of the file being compiled, in order, going into modules. */
-void for_each_definition(const idl_pstate_t *state, void (*visit)(const void *definition, void *argument), void *argument);
+void for_each_definition(const idl_pstate_t *state, void (*visit)(const void *definition, void *argument),
+                         void *argument);
 
-/* The file's place in the ROS 2 layout, which is how others include it, without the suffix: "sensor_msgs/msg/LaserScan".
-   The last two folders, because idlc does not tell its back ends the include directories. */
+/* The file's place in the ROS 2 layout, which is how others include it, without the suffix:
+   "sensor_msgs/msg/LaserScan". The last two folders, because idlc does not tell its back ends the include directories.
+ */
 void add_file_name(text_t *out, const char *path);
 
 /* The name with its modules: "sensor_msgs::msg::LaserScan" for separator "::". */

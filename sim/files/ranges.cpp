@@ -10,7 +10,8 @@ namespace kervan::sim {
 namespace {
 std::string text_of(double number) {
   std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed);
+  const auto [end, error] =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed);
   return {buffer.data(), end};
 }
 }  // namespace
@@ -18,7 +19,8 @@ std::string text_of(double number) {
 double positive(const config::Node& node, std::string_view unit, double highest) {
   const double value = node.as_quantity(unit);
   if (!(value > 0.0 && value <= highest))
-    node.fail(node.shown() + " is out of range; allowed: above 0, at most " + text_of(highest) + " " + std::string(unit));
+    node.fail(node.shown() + " is out of range; allowed: above 0, at most " + text_of(highest) + " " +
+              std::string(unit));
   return value;
 }
 
@@ -27,7 +29,8 @@ Vector2 point_within(const config::Node& node, double limit) {
   for (int i = 0; i < 2; ++i) {
     const config::Node& coordinate = node.children[static_cast<std::size_t>(i)];
     if (std::abs(point[i]) > limit)
-      coordinate.fail(coordinate.shown() + " is out of range; allowed: -" + text_of(limit) + " .. " + text_of(limit) + " m");
+      coordinate.fail(coordinate.shown() + " is out of range; allowed: -" + text_of(limit) + " .. " + text_of(limit) +
+                      " m");
   }
   return point;
 }

@@ -49,8 +49,6 @@ World world(const config::Node& file) {
 
 World load_world(const std::string& path) { return world(config::load(path)); }
 
-World parse_world(const std::string& text, const std::string& shown_as) {
-  return world(config::parse(text, shown_as));
-}
+World parse_world(const std::string& text, const std::string& shown_as) { return world(config::parse(text, shown_as)); }
 
 }  // namespace kervan::sim

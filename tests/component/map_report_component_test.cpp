@@ -69,8 +69,9 @@ struct TemporaryFolder {
 };
 
 void run(const std::filesystem::path& folder, Duration length) {
+  static const ComponentClass script = define<Script>("test/script");
   ComponentRegistry registry(ComponentRegistry::default_folders());
-  registry.add(define<Script>("test/script"));
+  registry.add(script);
   runtime::ContainerSpec spec;
   spec.clock = runtime::ClockMode::lockstep;
   spec.domain.id = 201;

@@ -5,6 +5,7 @@
 #include "framework/test/harness.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
+#include "sensor_msgs/msg/Range.hpp"
 #include "tests/component/plane_fixtures.hpp"
 
 namespace kervan::test {
@@ -35,6 +36,7 @@ TEST(MissionComponent, SendsTheGoalAtOnce) {
   ASSERT_TRUE(goal);
   EXPECT_EQ(goal->pose.position.x, 10.0);
   EXPECT_EQ(goal->header.frame_id, "map");
+  harness.advance(20ms);
   EXPECT_EQ(harness.reason(), "r1/truth: nothing received yet");
 }
 
@@ -63,6 +65,12 @@ TEST(MissionComponent, FailsAtTheTimeOutAndSaysHowFarTheRobotIs) {
   kervan_msgs::msg::Contact contact;
   contact.robot = "r1";
   harness.feed("r1/contact", contact);
+  for (const float distance : {0.5F, 0.25F, 0.75F}) {
+    sensor_msgs::msg::Range clearance;
+    clearance.range = distance;
+    harness.feed("r1/clearance", clearance);
+    harness.advance(20ms);
+  }
   drive(harness, "r1", 9.71, 9.71, 2s);
   EXPECT_TRUE(harness.finished());
   const auto* result = harness.latest<MissionResult>("result");
@@ -71,6 +79,7 @@ TEST(MissionComponent, FailsAtTheTimeOutAndSaysHowFarTheRobotIs) {
   EXPECT_EQ(result->reason, "the time is up: r1 is 0.29 m from its goal");
   EXPECT_FALSE(result->robots[0].reached);
   EXPECT_EQ(result->robots[0].contacts, 1u);
+  EXPECT_EQ(result->robots[0].min_clearance_m, 0.25);
   EXPECT_NEAR(result->robots[0].time_s, 5.0, 0.03);
 }
 

@@ -41,9 +41,10 @@ std::string report(const Case& test) {
   fs::current_path(COMPOSITION_TESTS);  // messages show paths as seen from here
   try {
     test::FakeComponents components;
-    const auto resolved = composition::resolve(
-        composition::load_text(text_of(test.file), test.file.filename().string(), fs::path(COMPOSITION_TESTS) / "worlds", test.options),
-        components);
+    const auto resolved =
+        composition::resolve(composition::load_text(text_of(test.file), test.file.filename().string(),
+                                                    fs::path(COMPOSITION_TESTS) / "worlds", test.options),
+                             components);
     std::string lines;
     for (const auto& finding : resolved.findings) lines += to_text(finding.location) + ": " + finding.message + "\n";
     return lines.empty() ? "nothing was reported\n" : lines;
@@ -54,7 +55,8 @@ std::string report(const Case& test) {
 
 std::vector<fs::path> files() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(COMPOSITION_TESTS) / "broken")) files.push_back(entry.path());
+  for (const auto& entry : fs::directory_iterator(fs::path(COMPOSITION_TESTS) / "broken"))
+    files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }

@@ -14,7 +14,8 @@ Composition loaded(const std::string& yaml, const LoadOptions& options = {}) {
   return load_text(yaml, "c.yaml", std::filesystem::path(COMPOSITION_TESTS) / "worlds", options);
 }
 
-ResolvedComposition resolved(const std::string& yaml, const LoadOptions& options = {}, const ResolveOptions& resolving = {}) {
+ResolvedComposition resolved(const std::string& yaml, const LoadOptions& options = {},
+                             const ResolveOptions& resolving = {}) {
   test::FakeComponents components;
   return resolve(loaded(yaml, options), components, resolving);
 }
@@ -78,7 +79,8 @@ std::string with_law(std::string yaml) {
 
 TEST(Composition, OfTheWholeFormatHasNothingToReport) {
   const auto composition = resolved(with_law(lab));
-  for (const Finding& finding : composition.findings) ADD_FAILURE() << to_text(finding.location) << ": " << finding.message;
+  for (const Finding& finding : composition.findings)
+    ADD_FAILURE() << to_text(finding.location) << ": " << finding.message;
   EXPECT_TRUE(composition.usable());
   EXPECT_EQ(composition.components.size(), 4u);
 }
@@ -134,7 +136,8 @@ TEST(Templates, RefuseAParameterThatHidesAnArgument) {
     loaded(lab);
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
-    EXPECT_STREQ(error.what(), "c.yaml:18:14: 'law' is already an argument of the composition (c.yaml:4:3); use another name");
+    EXPECT_STREQ(error.what(),
+                 "c.yaml:18:14: 'law' is already an argument of the composition (c.yaml:4:3); use another name");
   }
 }
 
@@ -176,7 +179,8 @@ TEST(Qos, OfATopicSaysWhichLineGaveEachValue) {
 TEST(Qos, IsTheOneDeclaredByTheWriterUnlessTheCompositionSaysOtherwise) {
   const auto composition = resolved(with_law(lab));
   EXPECT_EQ(composition.topics.at("/r1/waypoint").qos.profile.name, "latched");
-  EXPECT_EQ(value(composition, "/r1/waypoint", "durability").origin, "profile latched, declared by r1/planner.waypoint");
+  EXPECT_EQ(value(composition, "/r1/waypoint", "durability").origin,
+            "profile latched, declared by r1/planner.waypoint");
   EXPECT_EQ(value(composition, "/r1/waypoint", "lifespan").origin, "c.yaml:13:23 (topic /r1/*)");
 }
 
@@ -191,9 +195,10 @@ components:
 )");
   ASSERT_EQ(composition.findings.size(), 1u);
   EXPECT_EQ(composition.findings[0].severity, Severity::warning);
-  EXPECT_EQ(composition.findings[0].message,
-            "control.goal on '/waypoint': it expects a reliable topic, but its reliability is best_effort, from c.yaml:3:37 "
-            "(topic /waypoint): samples may be lost");
+  EXPECT_EQ(
+      composition.findings[0].message,
+      "control.goal on '/waypoint': it expects a reliable topic, but its reliability is best_effort, from c.yaml:3:37 "
+      "(topic /waypoint): samples may be lost");
   EXPECT_TRUE(composition.usable());
 }
 

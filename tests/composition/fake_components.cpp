@@ -108,15 +108,16 @@ void check_edges(const ValueMap& values) {
   for (std::size_t i = 0; i < params.edges.size(); ++i)
     for (const std::int64_t node : {params.edges[i].first, params.edges[i].second})
       if (node < 0 || node >= static_cast<std::int64_t>(params.nodes.size()))
-        throw ParameterError("edges[" + std::to_string(i) + "]", "there is no node " + std::to_string(node) + "; there are " +
-                                                                     std::to_string(params.nodes.size()));
+        throw ParameterError(
+            "edges[" + std::to_string(i) + "]",
+            "there is no node " + std::to_string(node) + "; there are " + std::to_string(params.nodes.size()));
 }
 
 }  // namespace
 
 std::vector<std::string> FakeComponents::types() const {
-  return {"broken/module", "control/field", "control/pursuit", "observe/log", "observe/mission", "planning/astar",
-          "safety/guard", "sim/ghost", "sim/world"};
+  return {"broken/module",  "control/field", "control/pursuit", "observe/log", "observe/mission",
+          "planning/astar", "safety/guard",  "sim/ghost",       "sim/world"};
 }
 
 std::vector<ParameterInfo> FakeComponents::parameters(const std::string& type) {
@@ -136,7 +137,8 @@ Manifest FakeComponents::manifest(const std::string& type, const ValueMap& value
     manifest.ports = world_ports(values);
   } else if (type == "planning/astar") {
     check_edges(values);
-    manifest.ports = {in("odom", odometry, qos::sensor), out("waypoint", pose, qos::latched), out("route", path, qos::latched)};
+    manifest.ports = {in("odom", odometry, qos::sensor), out("waypoint", pose, qos::latched),
+                      out("route", path, qos::latched)};
   } else if (type == "control/field" || type == "control/pursuit") {
     manifest.ports = {in("odom", odometry, qos::sensor.max_age(500ms)), in("goal", pose, qos::latched),
                       out("cmd_vel", twist, qos::command)};

@@ -1,9 +1,8 @@
 /// Our CDR against the serialiser that comes with Cyclone, for random values of every IDL type.
-#include <gtest/gtest.h>
-
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_cdrstream.h>
 #include <dds/ddsi/q_protocol.h>
+#include <gtest/gtest.h>
 
 #include <ostream>
 #include <string>

@@ -84,8 +84,8 @@ inline std::vector<unsigned char> cdr_of(const TypeSupport& support, const void*
 
 template <class... T>
 void add_message_types(std::vector<MessageType>& types, TypeList<T...>) {
-  (types.push_back({&type_support<T>(),
-                    [](Random& random, void* value) { randomise(random, *static_cast<T*>(value)); }}),
+  (types.push_back(
+       {&type_support<T>(), [](Random& random, void* value) { randomise(random, *static_cast<T*>(value)); }}),
    ...);
 }
 

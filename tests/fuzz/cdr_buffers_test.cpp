@@ -1,10 +1,12 @@
-/// Random, truncated and mutated buffers into the reader of every type: it must neither crash, nor allocate for bytes that
-/// are not there, nor accept what it cannot give back.
+/// Random, truncated and mutated buffers into the reader of every type: it must neither crash, nor allocate for bytes
+/// that are not there, nor accept what it cannot give back.
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <string>
 #include <vector>
 
 #include "framework/dds/cdr.hpp"
@@ -18,13 +20,13 @@ using Bytes = std::vector<unsigned char>;
 constexpr int buffers = 100'000;
 
 Bytes payload_of(const MessageType& type, Random& random) {
-  const AnyMessage message(*type.support);
-  type.randomise(random, const_cast<void*>(message.get()));
+  AnyMessage message(*type.support);
+  type.randomise(random, message.get());
   const Bytes body = cdr_of(*type.support, message.get());
-  Bytes payload;
-  for (const std::byte b : cdr::encapsulation(body.size())) payload.push_back(static_cast<unsigned char>(b));
-  payload.insert(payload.end(), body.begin(), body.end());
-  payload.resize(payload.size() + cdr::padding_after(body.size()));
+  const auto header = cdr::encapsulation(body.size());
+  Bytes payload(header.size() + body.size() + cdr::padding_after(body.size()));
+  std::memcpy(payload.data(), header.data(), header.size());
+  std::memcpy(payload.data() + header.size(), body.data(), body.size());
   return payload;
 }
 

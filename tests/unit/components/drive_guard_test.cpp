@@ -117,6 +117,14 @@ TEST(DriveGuard, IsNotKeptDrivingByRefusedCommands) {
   EXPECT_LT(guard.step(at(10250ms)).linear, 0.5);
 }
 
+TEST(DriveGuard, BrakesAtOnceWhenTheLastCommandIsForgotten) {
+  DriveGuard guard = driving({0.5, 0.0}, at(10s));
+  guard.command(at(10050ms), {0.5, 0.0});
+  guard.forget();
+  EXPECT_LT(guard.step(at(10050ms)).linear, 0.5);
+  EXPECT_EQ(guard.state(), DriveState::braking);
+}
+
 TEST(DriveGuard, DrivesOnWhenCommandsComeBack) {
   DriveGuard guard = driving({0.5, 0.0}, at(10s));
   const double braked = guard.step(at(11s)).linear;

@@ -71,9 +71,13 @@ TEST(StrictYaml, SaysThatAFileCannotBeRead) {
 
 TEST(Node, SuggestsTheKeyThatWasMeant) {
   const auto root = parse("kind: wall\ncolour: red\n", "f.yaml");
-  EXPECT_EQ(refused([&] { root.only_keys({"kind", "color", "size"}); }),
+  EXPECT_EQ(refused([&] {
+              root.only_keys({"kind", "color", "size"});
+            }),
             "f.yaml:2:1: unknown key 'colour'; did you mean 'color'? allowed: kind, color, size");
-  EXPECT_EQ(refused([&] { root.only_keys({"kind", "size"}); }),
+  EXPECT_EQ(refused([&] {
+              root.only_keys({"kind", "size"});
+            }),
             "f.yaml:2:1: unknown key 'colour'; allowed: kind, size");
 }
 
@@ -129,6 +133,14 @@ TEST(Node, ReadsDurations) {
   EXPECT_EQ(parse("50ms", "f").as_duration(), 50ms);
   EXPECT_EQ(parse("1.5 s", "f").as_duration(), 1500ms);
   EXPECT_EQ(parse("2 min", "f").as_duration(), 120s);
+}
+
+TEST(Node, IsShownInOneShortLine) {
+  const auto root = parse("a: \"first\\nsecond\"\nb: " + std::string(200, 'x') + "\n", "f.yaml");
+  EXPECT_EQ(refused([&] { root.required("a").as_bool(); }),
+            "f.yaml:1:4: a: \"first second\" is a text because of its quotes; write true or false without quotes");
+  EXPECT_EQ(refused([&] { root.required("b").as_bool(); }),
+            "f.yaml:2:4: b: expected true or false, found " + std::string(60, 'x') + "...");
 }
 
 TEST(Node, FollowsAPathAsFarAsItLeads) {

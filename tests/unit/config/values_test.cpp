@@ -105,9 +105,11 @@ TEST(Values, AreRefusedAtTheVeryPlace) {
       {"map: ''", "f.yaml:1:6: map: the name of the file is empty"},
       {"weights: [1, -2]", "f.yaml:1:14: weights[1]: -2 is out of range; allowed: at least 0"},
       {"nodes: [[0 m, 1 m], [2 m]]", "f.yaml:1:21: nodes[1]: expected a point [x m, y m], found a list of 1"},
-      {"edges: [[0, 1.5]]", "f.yaml:1:13: edges[0][1]: 1.5 is not an integer; write a whole number without point or exponent"},
+      {"edges: [[0, 1.5]]",
+       "f.yaml:1:13: edges[0][1]: 1.5 is not an integer; write a whole number without point or exponent"},
       {"sped: 1 m/s",
-       "f.yaml:1:1: test/params has no parameter 'sped'; did you mean 'speed'? it has: speed, period, law, loop, seed, map, "
+       "f.yaml:1:1: test/params has no parameter 'sped'; did you mean 'speed'? it has: speed, period, law, loop, seed, "
+       "map, "
        "weights, names, nodes, edges, robots"},
       {"robots: {r1: {start: [0 m, 0 m, 0 deg]}}",
        "f.yaml:1:14: r1: the parameter 'model' of robots is missing: Robot model."},
@@ -130,7 +132,8 @@ TEST(Values, AreRefusedWithoutAFileToo) {
   EXPECT_EQ(message({{"speed", 1}}), "accepted");
   EXPECT_EQ(message({{"speed", 7.0}}), "speed: 7 m/s is out of range; allowed: 0 .. 2 m/s");
   EXPECT_EQ(message({{"speed", "fast"}}), "speed: expected number, found fast");
-  EXPECT_EQ(message({{"edges", ValueList{ValueList{0, 1}, ValueList{0, 1.5}}}}), "edges[1][1]: expected integer, found 1.5");
+  EXPECT_EQ(message({{"edges", ValueList{ValueList{0, 1}, ValueList{0, 1.5}}}}),
+            "edges[1][1]: expected integer, found 1.5");
   EXPECT_EQ(message({{"robots", ValueMap{{"r1", ValueMap{}}}}}), "robots.r1.model: is missing: Robot model.");
 }
 

@@ -1,8 +1,8 @@
-# cmake -DFILE=<file.idl> -DBASE_DIR=<dir> -DIDLC=<idlc> -DGENERATOR=<back end> -DCOMPILE=<KervanIdlCompile.cmake> -DOUTPUT_DIR=<dir>
-#       -P refusal_test.cmake
+# cmake -DFILE=<file.idl> -DBASE_DIR=<dir> -DIDLC=<idlc> -DGENERATOR=<back end> -DCOMPILE=<KervanIdlCompile.cmake>
+#       -DOUTPUT_DIR=<dir> -P refusal_test.cmake
 #
-# Compiles an IDL file that must be refused with exactly the errors its comments `// expect line:column: error: ...` say,
-# in that order, and must leave nothing behind.
+# Compiles an IDL file that must be refused with exactly the errors that its comments `// expect line:column: error: ...`
+# say, in that order, and must leave nothing behind.
 
 cmake_minimum_required(VERSION 3.25)
 

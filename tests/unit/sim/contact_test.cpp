@@ -103,7 +103,9 @@ TEST(Contact, NoStepIsLongEnoughToPassAThinWall) {
 }
 
 TEST(Contact, WhateverIsDrivenTheBodyNeverEntersAnObstacle) {
-  const World world({.segments = {{{-1.0, -1.0}, {1.2, -1.0}}, {{1.2, -1.0}, {1.2, 1.0}}, {{1.2, 1.0}, {-1.0, 1.2}},
+  const World world({.segments = {{{-1.0, -1.0}, {1.2, -1.0}},
+                                  {{1.2, -1.0}, {1.2, 1.0}},
+                                  {{1.2, 1.0}, {-1.0, 1.2}},
                                   {{-1.0, 1.2}, {-1.0, -1.0}}},
                      .circles = {{{0.7, 0.6}, 0.1}},
                      .boxes = {{{-0.7, 0.8, 0.3}, {0.2, 0.3}}}});

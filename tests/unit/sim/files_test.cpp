@@ -49,8 +49,10 @@ TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
   EXPECT_EQ(world_refusal("walls: []\n"),
             "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes");
   EXPECT_EQ(world_refusal("circle: []\n"),
-            "w.yaml:3:1: unknown key 'circle'; did you mean 'circles'? allowed: kervan_world, name, segments, circles, boxes");
-  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m]}\n"), "w.yaml:4:5: circles[0]: the key 'radius' is missing");
+            "w.yaml:3:1: unknown key 'circle'; did you mean 'circles'? allowed: kervan_world, name, segments, circles, "
+            "boxes");
+  EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m]}\n"),
+            "w.yaml:4:5: circles[0]: the key 'radius' is missing");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: -0.3 m}\n"),
             "w.yaml:4:34: radius: -0.3 m is out of range; allowed: above 0, at most 1000000 m");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: 0 m}\n"),
@@ -113,7 +115,9 @@ std::string robot_refusal(const std::string& from, const std::string& to) {
   return refused([&] { parse_robot_model(text, "r.yaml"); });
 }
 
-TEST(RobotFile, ARobotMayHaveNoSonars) { EXPECT_TRUE(parse_robot_model(smallest_robot, "r.yaml").sonars.poses.empty()); }
+TEST(RobotFile, ARobotMayHaveNoSonars) {
+  EXPECT_TRUE(parse_robot_model(smallest_robot, "r.yaml").sonars.poses.empty());
+}
 
 TEST(RobotFile, EveryMistakeIsNamedAtItsPlace) {
   EXPECT_EQ(robot_refusal("[-1 m, 1 m], [-1 m, -1 m]", "[-1 m, -1 m], [-1 m, 1 m]"),
@@ -122,8 +126,9 @@ TEST(RobotFile, EveryMistakeIsNamedAtItsPlace) {
   EXPECT_EQ(robot_refusal("speed: 1 m/s", "speed: 0 m/s"),
             "r.yaml:4:36: speed: 0 m/s is out of range; allowed: above 0, at most 100 m/s");
   EXPECT_EQ(robot_refusal("speed: 1 m/s, ", ""), "r.yaml:4:8: drive: the key 'speed' is missing");
-  EXPECT_EQ(robot_refusal("name: r", "name: r\nsonars: {min_range: 2 m, max_range: 1 m, field_of_view: 1 rad, poses: []}"),
-            "r.yaml:3:21: min_range: 2 m is out of range; allowed: above 0, at most 1 m");
+  EXPECT_EQ(
+      robot_refusal("name: r", "name: r\nsonars: {min_range: 2 m, max_range: 1 m, field_of_view: 1 rad, poses: []}"),
+      "r.yaml:3:21: min_range: 2 m is out of range; allowed: above 0, at most 1 m");
 }
 
 }  // namespace

@@ -11,9 +11,7 @@ constexpr double degree = pi / 180.0;
 const RandomSource source(1, "r1");
 
 /// One sonar at the origin that looks along x.
-SonarRing single() {
-  return {.min_range = 0.15, .max_range = 5.0, .field_of_view = 30.0 * degree, .poses = {Pose2{}}};
-}
+SonarRing single() { return {.min_range = 0.15, .max_range = 5.0, .field_of_view = 30.0 * degree, .poses = {Pose2{}}}; }
 
 double read(const World& world, const Pose2& pose, const SonarSettings& settings, std::uint64_t scan = 0) {
   double range = 0.0;
@@ -24,10 +22,10 @@ double read(const World& world, const Pose2& pose, const SonarSettings& settings
 World wall_at(double x) { return World({.segments = {{{x, -50.0}, {x, 50.0}}}}); }
 
 TEST(SonarRing, OfTheP3DxIsThatOfItsTable) {
-  constexpr int table[16][3] = {{69, 136, 90},     {114, 119, 50},    {148, 78, 30},     {166, 27, 10},
-                                {166, -27, -10},   {148, -78, -30},   {114, -119, -50},  {69, -136, -90},
+  constexpr int table[16][3] = {{69, 136, 90},     {114, 119, 50},     {148, 78, 30},     {166, 27, 10},
+                                {166, -27, -10},   {148, -78, -30},    {114, -119, -50},  {69, -136, -90},
                                 {-157, -136, -90}, {-203, -119, -130}, {-237, -78, -150}, {-255, -27, -170},
-                                {-255, 27, 170},   {-237, 78, 150},   {-203, 119, 130},  {-157, 136, 90}};
+                                {-255, 27, 170},   {-237, 78, 150},    {-203, 119, 130},  {-157, 136, 90}};
   const SonarRing& ring = p3dx().sonars;
   ASSERT_EQ(ring.poses.size(), 16u);
   for (std::size_t i = 0; i < 16; ++i) {
@@ -103,8 +101,10 @@ TEST(Sonar, DropOutsComeAsOftenAsAskedAndChangeNothingElse) {
   constexpr int count = 4000;
   for (std::uint64_t scan = 0; scan < count; ++scan) {
     const double range = read(world, {}, {.rays = 1, .drop_out = 0.1}, scan);
-    if (range == infinity) ++lost;
-    else EXPECT_EQ(range, read(world, {}, {.rays = 1}, scan));
+    if (range == infinity)
+      ++lost;
+    else
+      EXPECT_EQ(range, read(world, {}, {.rays = 1}, scan));
   }
   EXPECT_NEAR(lost, 0.1 * count, 5 * std::sqrt(0.1 * 0.9 * count));
 }

@@ -1,0 +1,127 @@
+// The program as a person meets it: exit codes, one line on stderr, and nothing written when something is refused.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+
+namespace fs = std::filesystem;
+
+namespace {
+
+const char* const without_errors = "2>/dev/null";
+
+struct Result {
+  int code = -1;
+  std::string output;  ///< stdout and stderr
+};
+
+class Program : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(testing::TempDir()) / ("kervan_cli_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Result kervan(const std::string& arguments, const std::string& errors = "2>&1") const {
+    const std::string command = "cd " + folder_.string() + " && " KERVAN_PROGRAM " " + arguments + " " + errors;
+    FILE* pipe = ::popen(command.c_str(), "r");
+    Result result;
+    std::array<char, 4096> buffer{};
+    while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), pipe))
+      result.output.append(buffer.data(), size);
+    const int status = ::pclose(pipe);
+    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    return result;
+  }
+
+  /// Refused with exit code 2 in one line, and the working folder is as it was.
+  void expect_refused(const std::string& arguments, const std::string& message) const {
+    const auto count = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+    const Result result = kervan(arguments);
+    EXPECT_EQ(result.code, 2) << arguments;
+    EXPECT_EQ(result.output, message + "\n") << arguments;
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), count)
+        << "something was written";
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Program, ChecksEveryShippedCompositionWithoutAFinding) {
+  for (const auto& entry : fs::directory_iterator(SHIPPED_COMPOSITIONS)) {
+    const Result result = kervan("check " + entry.path().string());
+    EXPECT_EQ(result.code, 0) << entry.path() << "\n" << result.output;
+  }
+}
+
+TEST_F(Program, FindsAShippedCompositionByItsName) { EXPECT_EQ(kervan("check lab").code, 0); }
+
+TEST_F(Program, SaysWhereAValueOfAProfileComesFrom) {
+  const Result result = kervan("check lab --explain /r1/sonar");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.output.find("reliability  best_effort  profile sensor, declared by world.r1/sonar"),
+            std::string::npos)
+      << result.output;
+}
+
+TEST_F(Program, DescribesEveryComponent) {
+  const Result all = kervan("describe");
+  EXPECT_EQ(all.code, 0);
+  for (const char* type : {"sim/world", "planning/waypoint_astar", "control/potential_field", "safety/drive_guard"}) {
+    EXPECT_NE(all.output.find(type), std::string::npos) << type;
+    EXPECT_EQ(kervan(std::string("describe ") + type).code, 0) << type;
+    EXPECT_EQ(kervan(std::string("describe ") + type + " --json", without_errors).output.front(), '{') << type;
+  }
+}
+
+TEST_F(Program, HelpsWithEveryVerb) {
+  for (const char* verb : {"", "run", "check", "describe"})
+    EXPECT_EQ(kervan(std::string(verb) + " --help").code, 0) << verb;
+}
+
+TEST_F(Program, RefusesInOneLineAndWritesNothing) {
+  expect_refused("", "a command is missing: run, check, describe; see kervan --help");
+  expect_refused("rnu lab", "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe");
+  expect_refused("run lba", "there is no composition 'lba'; did you mean 'lab'? there are: lab");
+  expect_refused("run other.yaml", "other.yaml: there is no such file");
+  expect_refused("run lab --for 60", "--for 60: 60 has no unit; write e.g. 60 s");
+  expect_refused("run lab --arg seed=-1", "--arg seed=-1: -1 is out of range; allowed: 0 .. 4294967295");
+  expect_refused("run lab --arg drift=1", "--arg drift=1: 1 is out of range; allowed: 0 .. 0.5");
+  expect_refused("run lab --arg controller=vfh",
+                 "--arg controller=vfh: vfh is not one of potential_classic, potential_gecui");
+  expect_refused(
+      "check lab --explain /r1/sonra",
+      "--explain /r1/sonra: lab has no such topic; did you mean '/r1/sonar'? it has: /clock, /outline, /r1/clearance, "
+      "/r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, /r1/odom, /r1/route, /r1/sonar, /r1/truth, "
+      "/r1/waypoint, /result, /tf");
+}
+
+TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {
+  std::ofstream(folder_ / "world.yaml") << "kervan_world: 1\nname: lab\ncirclse: []\n";
+  std::ofstream(folder_ / "c.yaml")
+      << "kervan: 1\nname: c\ncomponents:\n  world: {type: sim/world, params: {map: world.yaml}}\n";
+  expect_refused("run c.yaml",
+                 (folder_ / "world.yaml").string() +
+                     ":3:1: unknown key 'circlse'; did you mean 'circles'? allowed: kervan_world, name, segments, "
+                     "circles, boxes");
+}
+
+TEST_F(Program, RefusesARobotThatStandsInAWall) {
+  std::ofstream(folder_ / "c.yaml") << "kervan: 1\nname: c\ncomponents:\n  world:\n    type: sim/world\n    params:\n"
+                                       "      map: worlds/lab.yaml\n"
+                                       "      robots: {r1: {model: robots/p3dx.yaml, start: [8.2 m, 6.5 m, 0 deg]}}\n";
+  expect_refused("run c.yaml", "c.yaml:8:53: robots.r1.start: the robot would stand in an obstacle of lab");
+}
+
+TEST_F(Program, GivesErrorsAsJsonOnTheLastLineToo) {
+  EXPECT_EQ(kervan("check lab --json --arg drift=1", without_errors).output,
+            R"({"result":"error","error":{"message":"1 is out of range; allowed: 0 .. 0.5","file":"--arg drift=1"}})"
+            "\n");
+}
+
+}  // namespace
