@@ -1,5 +1,5 @@
-/// Poses, speeds and times of the plane as the ROS 2 messages carry them. What the plane does not have (z, roll, pitch) is
-/// ignored on the way in and zero on the way out.
+/// Poses, speeds and times of the plane as the ROS 2 messages carry them. What the plane does not have (z, roll, pitch)
+/// is ignored on the way in and zero on the way out.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,9 @@ inline void set_header(std_msgs::msg::Header& header, Time stamp, const std::str
   header.frame_id = frame;
 }
 
-inline geometry::Vector2 position_of(const geometry_msgs::msg::Pose& pose) { return {pose.position.x, pose.position.y}; }
+inline geometry::Vector2 position_of(const geometry_msgs::msg::Pose& pose) {
+  return {pose.position.x, pose.position.y};
+}
 
 inline geometry::Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
   const auto& q = pose.orientation;

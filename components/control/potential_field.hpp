@@ -5,8 +5,8 @@
 /// Trans. Robotics and Automation 16(5), 2000, doi:10.1109/70.880813. Equation numbers 3.1 to 3.9 are those of the
 /// comparison by Çınar, Parlaktuna and Yazıcı; the factor that its equation 3.4 lost in print is restored here.
 ///
-/// Symbols: q the robot, ρ its distance to the obstacle, ρ0 the distance within which an obstacle acts, ρg the distance to
-/// the goal, n_OR the unit vector from obstacle to robot, n_RG the unit vector from robot to goal.
+/// Symbols: q the robot, ρ its distance to the obstacle, ρ0 the distance within which an obstacle acts, ρg the distance
+/// to the goal, n_OR the unit vector from obstacle to robot, n_RG the unit vector from robot to goal.
 #pragma once
 
 #include <optional>
@@ -40,13 +40,13 @@ struct Force {
   std::optional<double> rho;                                 ///< m; none if no obstacle was given
 };
 
-/// The force at `robot`, a point of any frame in metres; `goal` and `obstacle` are points of the same frame. All must be
-/// finite. `obstacle` is the one obstacle point nearest to the robot's centre: a sum over several points would move the
-/// place where the classical law comes to rest.
+/// The force at `robot`, a point of any frame in metres; `goal` and `obstacle` are points of the same frame. All must
+/// be finite. `obstacle` is the one obstacle point nearest to the robot's centre: a sum over several points would move
+/// the place where the classical law comes to rest.
 ///
-/// The law is used with ρg' = min(ρg, rho_g_cap) in the attraction and in F1 and F2 alike. Within the cap it is the law of
-/// the papers; beyond it the attraction no longer grows with the distance and cannot push the robot into an obstacle.
-/// Capping only the repulsion does exactly that.
+/// The law is used with ρg' = min(ρg, rho_g_cap) in the attraction and in F1 and F2 alike. Within the cap it is the law
+/// of the papers; beyond it the attraction no longer grows with the distance. If only the repulsion were capped, the
+/// attraction would push the robot into the obstacle.
 ///
 /// At the goal both laws give no attraction. On the obstacle point (ρ below 1 mm) the direction away from it is unknown
 /// and the repulsion is zero; drive_along() stops a robot long before.
@@ -62,10 +62,11 @@ struct ForceDriveParams {
   double braking = 0.5;        ///< m/s2, deceleration assumed when the speed is limited before an obstacle
 };
 
-/// The motion of a robot with heading `yaw` (rad) that follows `force` (same frame): it turns towards the force and drives
-/// the faster, the stronger the force and the better its heading agrees; it never reverses. With e the angle from the
-/// heading to the force, v = speed · min(1, |F| / full_force) · max(0, cos e) and ω = turn_gain · e, limited to ±turn_rate.
-/// v is limited further so that braking brings the robot to rest stop_distance from the obstacle. No force, no motion.
+/// The motion of a robot with heading `yaw` (rad) that follows `force` (same frame): it turns towards the force and
+/// drives the faster, the stronger the force and the better its heading agrees; it never reverses. With e the angle
+/// from the heading to the force, v = speed · min(1, |F| / full_force) · max(0, cos e) and ω = turn_gain · e, limited
+/// to ±turn_rate. v is limited further so that braking brings the robot to rest stop_distance from the obstacle. No
+/// force, no motion.
 geometry::Twist2 drive_along(const ForceDriveParams& params, const Force& force, double yaw);
 
 }  // namespace kervan::control

@@ -30,13 +30,15 @@ struct PotentialFieldParams {
     v(force.law, "law", {.choices = {"potential_classic", "potential_gecui"}, .help = "How an obstacle repels."});
     v(force.xi, "xi", {.min = 0.0, .max = 100.0, .help = "Attraction for each metre to the waypoint."});
     v(force.eta, "eta", {.min = 0.0, .max = 100.0, .help = "Strength of the repulsion."});
-    v(force.n, "n", {.min = 0.0, .max = 10.0, .help = "Power of the distance to the goal in the repulsion of Ge & Cui."});
+    v(force.n, "n",
+      {.min = 0.0, .max = 10.0, .help = "Power of the distance to the goal in the repulsion of Ge & Cui."});
     v(force.rho0, "rho0", {.unit = "m", .min = 0.05, .max = 10.0, .help = "An obstacle acts within this distance."});
     v(force.rho_g_cap, "rho_g_cap",
       {.unit = "m", .min = 0.05, .max = 1000.0, .help = "The force takes a farther waypoint to be this far."});
     v(drive.speed, "speed", {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Speed on a free course."});
     v(drive.full_force, "full_force", {.min = 0.01, .max = 100.0, .help = "A force of this or more means full speed."});
-    v(drive.turn_gain, "turn_gain", {.unit = "1/s", .min = 0.0, .max = 20.0, .help = "Turning rate per angle to turn."});
+    v(drive.turn_gain, "turn_gain",
+      {.unit = "1/s", .min = 0.0, .max = 20.0, .help = "Turning rate per angle to turn."});
     v(drive.turn_rate, "turn_rate", {.unit = "rad/s", .min = 0.0, .max = 10.0, .help = "Highest turning rate."});
     v(drive.stop_distance, "stop_distance",
       {.unit = "m", .min = 0.0, .max = 5.0, .help = "Stands this far from an obstacle, from the robot's centre."});
@@ -50,7 +52,8 @@ struct PotentialFieldParams {
 /// reason, while an input it needs is missing or stale.
 class PotentialFieldComponent final : public Component {
   PotentialFieldParams params_ = parameters<PotentialFieldParams>();
-  Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, &PotentialFieldComponent::on_waypoint,
+  Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched,
+                                                   &PotentialFieldComponent::on_waypoint,
                                                    "Where to drive, in the frame of the odometry."};
   Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor.max_age(500ms), "Where the robot is."};
   Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(500ms),
@@ -71,18 +74,17 @@ class PotentialFieldComponent final : public Component {
   void on_sonar(const kervan_msgs::msg::SonarArray& sonar, Time) {
     echoes_.clear();
     for (const auto& reading : sonar.readings)
-      echoes_.push_back({{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
-                         static_cast<double>(reading.range)});
+      echoes_.push_back(
+          {{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
+           static_cast<double>(reading.range)});
     obstacle_ = nearest_echo(echoes_, static_cast<double>(sonar.max_range));
     if (const auto* odometry = odom_.latest(); obstacle_ && odometry)
       obstacle_ = components::pose_of(odometry->pose.pose) * *obstacle_;
   }
 
   void on_tick(Time now) {
-    for (const InputBase* input : {static_cast<InputBase*>(&waypoint_), static_cast<InputBase*>(&odom_),
-                                   static_cast<InputBase*>(&sonar_)}) {
-      if (std::string why = input->missing(); !why.empty()) return stand(now, std::move(why));
-    }
+    for (const std::string& why : {waypoint_.missing(), odom_.missing(), sonar_.missing()})
+      if (!why.empty()) return stand(now, why);
     const auto& odometry = *odom_.latest();
     const geometry::Pose2 robot = components::pose_of(odometry.pose.pose);
     const geometry::Vector2 goal = components::position_of(waypoint_.latest()->pose);

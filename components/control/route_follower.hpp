@@ -20,12 +20,12 @@ class RouteFollower {
  public:
   explicit RouteFollower(const RouteFollowerParams& params) : params_(params) {}
 
-  /// Starts a route from its first waypoint; points in metres, in the frame of the positions given to advance(). An empty
-  /// route leaves nothing to do.
+  /// Starts a route from its first waypoint; points in metres, in the frame of the positions given to advance(). An
+  /// empty route leaves nothing to do.
   void start(std::vector<geometry::Vector2> route);
 
-  /// Passes every waypoint that counts from `position`, several if they lie close together. True if the current waypoint
-  /// changed or the route was finished. A position that is not finite passes nothing.
+  /// Passes every waypoint that counts from `position`, several if they lie close together. True if the current
+  /// waypoint changed or the route was finished. A position that is not finite passes nothing.
   bool advance(const geometry::Vector2& position);
 
   /// Where to drive now; none before the first route and after an empty one. A finished route keeps its last waypoint.

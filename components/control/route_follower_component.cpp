@@ -18,7 +18,10 @@ struct RouteFollowerComponentParams {
   template <class Visitor>
   void describe(Visitor& v) {
     v(follow.pass_within, "pass_within",
-      {.unit = "m", .min = 0.0, .max = 10.0, .help = "An intermediate waypoint counts as passed within this distance."});
+      {.unit = "m",
+       .min = 0.0,
+       .max = 10.0,
+       .help = "An intermediate waypoint counts as passed within this distance."});
     v(follow.arrive_within, "arrive_within",
       {.unit = "m", .min = 0.0, .max = 10.0, .help = "The last waypoint counts as reached within this distance."});
   }

@@ -133,13 +133,13 @@ class WorldLayer {
                              {"stroke-linejoin", "round"}});
   }
 
-  /// A text whose font size is in pixels. Fonts smaller than one unit are drawn badly by some programs, so the text has a
-  /// coordinate system of its own in pixels.
+  /// A text whose font size is in pixels. Fonts smaller than one unit are drawn badly by some programs, so the text has
+  /// a coordinate system of its own in pixels.
   void label(const Vector2& at, const std::string& content, double size, const char* colour, const char* anchor,
              const Vector2& offset, const char* weight = "", bool halo = false) {
     if (!at.allFinite()) return;
-    svg_.text(content, {{"transform", "translate(" + metres(at.x()) + ' ' + metres(-at.y()) + ") scale(" +
-                                          decimal(px_, 6) + ")"},
+    svg_.text(content, {{"transform",
+                         "translate(" + metres(at.x()) + ' ' + metres(-at.y()) + ") scale(" + decimal(px_, 6) + ")"},
                         {"x", pixels(offset.x())},
                         {"y", pixels(offset.y())},
                         {"font-size", pixels(size)},
@@ -170,7 +170,8 @@ void draw_goal(WorldLayer& layer, const Vector2& at) {
 
 void draw_closest(WorldLayer& layer, const Vector2& at) {
   const double r = 5.5 * layer.px();
-  layer.polygon({at + Vector2(r, 0), at + Vector2(0, r), at + Vector2(-r, 0), at + Vector2(0, -r)}, "#ffd54a", ink, 1.2);
+  layer.polygon({at + Vector2(r, 0), at + Vector2(0, r), at + Vector2(-r, 0), at + Vector2(0, -r)}, "#ffd54a", ink,
+                1.2);
 }
 
 void draw_start(WorldLayer& layer, const Vector2& at, const char* colour) {
@@ -191,9 +192,7 @@ void draw_route(WorldLayer& layer, const Polyline& route, const char* colour) {
   layer.line(route, colour, 9.0, {}, "0.22");
 }
 
-void draw_odometry(WorldLayer& layer, const Polyline& path) {
-  layer.line(path, ink, 1.1, layer.dashes(3.0, 3.0));
-}
+void draw_odometry(WorldLayer& layer, const Polyline& path) { layer.line(path, ink, 1.1, layer.dashes(3.0, 3.0)); }
 
 void draw_truth(WorldLayer& layer, const Polyline& path, const char* colour) { layer.line(path, colour, 2.4); }
 
@@ -214,15 +213,17 @@ void draw_waypoint(WorldLayer& layer, const Vector2& at, std::size_t number) {
 
 void draw_grid(WorldLayer& layer, const Bounds& bounds) {
   const double step = round_step(std::max(bounds.width(), bounds.height()) / 12.0);
-  // Counted in whole steps: adding the step up would leave 0 drawn as 1e-17.
-  const auto first = [step](double low) { return static_cast<int>(std::ceil(low / step)); };
-  for (int i = first(bounds.low.x()); i * step <= bounds.high.x(); ++i) {
-    const double x = i * step;
+  // Counted in whole steps: adding the step up would leave 0 drawn as 1e-17. The count is bounded, because far from the
+  // origin a double may no longer tell one step from the next.
+  constexpr int most = 20;
+  const double first_x = std::ceil(bounds.low.x() / step), first_y = std::ceil(bounds.low.y() / step);
+  for (int i = 0; i < most && (first_x + i) * step <= bounds.high.x(); ++i) {
+    const double x = (first_x + i) * step;
     layer.line({{x, bounds.low.y()}, {x, bounds.high.y()}}, "#e9edf1", 1.0);
     layer.label({x, bounds.low.y()}, decimal(x, step < 1.0 ? 1 : 0), 10.0, soft_ink, "middle", {0.0, 14.0});
   }
-  for (int i = first(bounds.low.y()); i * step <= bounds.high.y(); ++i) {
-    const double y = i * step;
+  for (int i = 0; i < most && (first_y + i) * step <= bounds.high.y(); ++i) {
+    const double y = (first_y + i) * step;
     layer.line({{bounds.low.x(), y}, {bounds.high.x(), y}}, "#e9edf1", 1.0);
     layer.label({bounds.low.x(), y}, decimal(y, step < 1.0 ? 1 : 0), 10.0, soft_ink, "end", {-6.0, 3.5});
   }
@@ -370,11 +371,9 @@ double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
       const double x = margin + (k % 2 == 0 ? 0.0 : 205.0);
       if (k % 2 == 0) y += line_height;
       svg.text(robot.figures[k].first, {{"x", pixels(x)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", soft_ink}});
-      svg.text(robot.figures[k].second, {{"x", pixels(x + 185.0)},
-                                         {"y", pixels(y)},
-                                         {"font-size", "12"},
-                                         {"fill", ink},
-                                         {"text-anchor", "end"}});
+      svg.text(
+          robot.figures[k].second,
+          {{"x", pixels(x + 185.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}, {"text-anchor", "end"}});
     }
     y += 8.0;
   }
@@ -458,8 +457,8 @@ std::string to_svg(const MapDrawing& drawing) {
     const Vector2 at = at_page(page_width - margin - from_right, details_top);
     draw_detail(svg, drawing, details[i], at.x(), at.y(), px);
   }
-  svg.open("g", {{"transform", "translate(" + metres(corner.x()) + ' ' + metres(corner.y()) + ") scale(" +
-                                   decimal(px, 6) + ")"}});
+  svg.open("g", {{"transform",
+                  "translate(" + metres(corner.x()) + ' ' + metres(corner.y()) + ") scale(" + decimal(px, 6) + ")"}});
   draw_header(svg, drawing);
   svg.append(foot);
   svg.close("g");

@@ -47,10 +47,10 @@ struct MapDrawing {
   std::vector<DrawnRobot> robots;
 };
 
-/// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in SVG, a
-/// point (x, y) of the map is drawn at (x, -y). Beside the map stand the legend, the robots' figures and, for up to three
-/// robots, the surroundings of the goal enlarged. Points that are not finite are left out. Equal drawings give equal
-/// bytes.
+/// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in
+/// SVG, a point (x, y) of the map is drawn at (x, -y). Beside the map stand the legend, the robots' figures and, for up
+/// to three robots, the surroundings of the goal enlarged. Points that are not finite are left out. Equal drawings give
+/// equal bytes.
 std::string to_svg(const MapDrawing& drawing);
 
 }  // namespace kervan::observe

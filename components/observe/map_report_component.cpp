@@ -124,8 +124,8 @@ class Subject {
   Input<kervan_msgs::msg::Contact> contact_;
 };
 
-/// Writes trajectory.csv while the run goes on and map.svg at its end, into the run's folder. What it does not receive it
-/// leaves out; without a folder it writes nothing.
+/// Writes trajectory.csv while the run goes on and map.svg at its end, into the run's folder. What it does not receive
+/// it leaves out; without a folder it writes nothing.
 class MapReportComponent final : public Component {
   MapReportParams params_ = parameters<MapReportParams>();
   std::deque<Subject> robots_ = subjects();
@@ -164,10 +164,10 @@ class MapReportComponent final : public Component {
     drawing.nodes = params_.nodes;
     if (const auto* world = world_.latest()) drawing.world = drawn(*world);
     const auto* result = result_.latest();
-    drawing.result = !result                                              ? "aborted"
+    drawing.result = !result                                             ? "aborted"
                      : result->result == MissionOutcome::MISSION_SUCCESS ? "success"
                      : result->result == MissionOutcome::MISSION_FAILED  ? "failed"
-                                                                          : "aborted";
+                                                                         : "aborted";
     drawing.subtitle = "ended after " + decimal(seconds(now - started_), 1) + " s";
     if (result && !result->reason.empty()) drawing.subtitle += "; " + result->reason;
     for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));

@@ -56,7 +56,8 @@ class Contender {
         params_(params),
         truth_(owner, name + "/truth", qos::state, "True pose and speed of " + name + "."),
         contact_(owner, name + "/contact", qos::event, "Every touch of " + name + "."),
-        clearance_(owner, name + "/clearance", qos::state.optional(), "Distance of the hull of " + name + " to the world."),
+        clearance_(owner, name + "/clearance", qos::state.optional(),
+                   "Distance of the hull of " + name + " to the world."),
         goal_(owner, name + "/goal", qos::latched, "Where " + name + " is to go.") {}
 
   void start(Time now) {
@@ -120,7 +121,7 @@ class MissionComponent final : public Component {
   Time activated_{};
 
   std::deque<Contender> contenders() {
-    if (params_.goals.empty()) throw ParameterError("goals", "no robot has a goal");
+    if (params_.goals.empty() && !describing()) throw ParameterError("goals", "no robot has a goal");
     std::deque<Contender> robots;
     for (const auto& [name, goals] : params_.goals) {
       if (goals.at.empty()) throw ParameterError("goals." + name + ".at", "there is no goal in it");

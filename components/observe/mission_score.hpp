@@ -23,14 +23,15 @@ struct MissionParams {
 
 enum class MissionOutcome { running, reached, timed_out };
 
-/// The figures so far. Distances are in metres, between the robot's base_link and the goal it drives to, or drove to last.
+/// The figures so far. Distances are in metres, between the robot's base_link and the goal it drives to, or drove to
+/// last.
 struct MissionFigures {
   MissionOutcome outcome = MissionOutcome::running;
-  std::size_t goal = 0;                                      ///< number of that goal, from 0
-  double time = 0.0;                                         ///< s from the start to the rest at the last goal, or to now
-  double error = 0.0;                                        ///< from the last truth to the goal; 0 before the first
-  double path = 0.0;                                         ///< length of the driven path
-  double closest = 0.0;                                      ///< least distance to the goal; 0 before the first truth
+  std::size_t goal = 0;  ///< number of that goal, from 0
+  double time = 0.0;     ///< s from the start to the rest at the last goal, or to now
+  double error = 0.0;    ///< from the last truth to the goal; 0 before the first
+  double path = 0.0;     ///< length of the driven path
+  double closest = 0.0;  ///< least distance to the goal; 0 before the first truth
   geometry::Vector2 closest_at = geometry::Vector2::Zero();  ///< where the robot was then
   std::uint32_t contacts = 0;
   std::optional<double> min_clearance;  ///< least distance between hull and world; none if it was never told

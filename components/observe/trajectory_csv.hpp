@@ -21,8 +21,8 @@ struct TrajectoryRow {
   geometry::Twist2 twist;               ///< true motion, m/s and rad/s
 };
 
-/// One line without a line break. Numbers have a point and a fixed number of decimals whatever the locale, so that equal
-/// runs write equal files; what is not finite is an empty field.
+/// One line without a line break. Numbers have a point and a fixed number of decimals whatever the locale, so that
+/// equal runs write equal files; what is not finite is an empty field.
 std::string to_csv(const TrajectoryRow& row);
 
 }  // namespace kervan::observe

@@ -1,9 +1,10 @@
 /// A* over a waypoint graph.
 ///
 /// P. E. Hart, N. J. Nilsson, B. Raphael, "A Formal Basis for the Heuristic Determination of Minimum Cost Paths", IEEE
-/// Trans. Systems Science and Cybernetics 4(2), 1968, doi:10.1109/TSSC.1968.300136. Used as the global planner by Çınar,
-/// Parlaktuna and Yazıcı's comparison of potential field methods, whose own pseudo code is not A*: it never improves a
-/// parent and stops when the goal is generated. This is the textbook algorithm; the difference is a unit test.
+/// Trans. Systems Science and Cybernetics 4(2), 1968, doi:10.1109/TSSC.1968.300136. Used as the global planner by
+/// Çınar, Parlaktuna and Yazıcı's comparison of potential field methods, whose own pseudo code is not A*: it never
+/// improves a parent and stops when the goal is generated. This is the textbook algorithm; the difference is a unit
+/// test.
 #pragma once
 
 #include <cstddef>
@@ -32,8 +33,9 @@ struct Route {
 /// with the lower number is expanded first, so that equal graphs give equal routes.
 Route find_route(const WaypointGraph& graph, std::size_t start, std::size_t goal);
 
-/// The cheapest route between the nodes nearest to two points of the map frame, each at most `reach` metres away from its
-/// node. A point that is not finite is off the graph.
-Route find_route(const WaypointGraph& graph, const geometry::Vector2& start, const geometry::Vector2& goal, double reach);
+/// The cheapest route between the nodes nearest to two points of the map frame, each at most `reach` metres away from
+/// its node. A point that is not finite is off the graph.
+Route find_route(const WaypointGraph& graph, const geometry::Vector2& start, const geometry::Vector2& goal,
+                 double reach);
 
 }  // namespace kervan::planning

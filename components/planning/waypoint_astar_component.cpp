@@ -22,7 +22,8 @@ struct WaypointAstarParams {
     v(nodes, "nodes", {.unit = "m", .help = "Waypoints in the map, numbered from 0.", .required = true});
     v(edges, "edges", {.help = "Pairs of waypoints joined by a free straight line.", .required = true});
     v(costs, "costs", {.unit = "m", .min = 0.0, .help = "One for each edge, at least its length; none: the lengths."});
-    v(reach, "reach", {.unit = "m", .min = 0.0, .max = 100.0, .help = "Farthest start and goal may lie from a waypoint."});
+    v(reach, "reach",
+      {.unit = "m", .min = 0.0, .max = 100.0, .help = "Farthest start and goal may lie from a waypoint."});
   }
 };
 
@@ -33,7 +34,8 @@ WaypointGraph graph_of(const WaypointAstarParams& params) {
   WaypointGraph graph(params.nodes);
   for (std::size_t i = 0; i < params.edges.size(); ++i) {
     // A negative number becomes one far beyond the last node and is refused as such.
-    const auto a = static_cast<std::size_t>(params.edges[i].first), b = static_cast<std::size_t>(params.edges[i].second);
+    const auto a = static_cast<std::size_t>(params.edges[i].first),
+               b = static_cast<std::size_t>(params.edges[i].second);
     try {
       params.costs.empty() ? graph.connect(a, b) : graph.connect(a, b, params.costs[i]);
     } catch (const std::invalid_argument& error) {

@@ -24,8 +24,8 @@ class WaypointGraph {
   /// Throws std::invalid_argument if a node does not exist or both are the same.
   void connect(std::size_t a, std::size_t b);
 
-  /// As above with a cost in metres. A cost below the distance is refused too, because it would make the straight line an
-  /// overestimate and A* could then return a path that is not the cheapest.
+  /// As above with a cost in metres. A cost below the distance is refused too, because it would make the straight line
+  /// an overestimate and A* could then return a path that is not the cheapest.
   void connect(std::size_t a, std::size_t b, double cost);
 
   std::size_t size() const { return nodes_.size(); }
@@ -33,8 +33,8 @@ class WaypointGraph {
   const std::vector<Edge>& edges(std::size_t node) const { return edges_.at(node); }  ///< in the order of connect()
   double distance(std::size_t a, std::size_t b) const { return (position(a) - position(b)).norm(); }
 
-  /// The node nearest to `point`, the lower number if two are equally near; none if no node lies within `reach` metres or
-  /// the point is not finite.
+  /// The node nearest to `point`, the lower number if two are equally near; none if no node lies within `reach` metres
+  /// or the point is not finite.
   std::optional<std::size_t> nearest(const geometry::Vector2& point, double reach) const;
 
  private:

@@ -6,8 +6,8 @@
 namespace kervan::safety {
 namespace {
 
-/// The value nearest to `target` that can be reached from `value` when its magnitude grows by at most `up` and falls by at
-/// most `down`. It stops at zero before it changes sign, because the two sides of zero have different limits.
+/// The value nearest to `target` that can be reached from `value` when its magnitude grows by at most `up` and falls by
+/// at most `down`. It stops at zero before it changes sign, because the two sides of zero have different limits.
 double approach(double value, double target, double up, double down) {
   if (value < 0.0) return -approach(-value, -target, up, down);
   if (target >= value) return std::min(target, value + up);

@@ -26,8 +26,8 @@ enum class DriveState {
   braking,    ///< the last command is too old; the robot brakes or stands
 };
 
-/// Takes commands as they come and gives one each period. The state is what it last gave, so the output obeys the limits
-/// whatever the input does.
+/// Takes commands as they come and gives one each period. The state is what it last gave, so the output obeys the
+/// limits whatever the input does.
 class DriveGuard {
  public:
   explicit DriveGuard(const DriveGuardParams& params) : params_(params) {}
@@ -39,9 +39,9 @@ class DriveGuard {
   /// Whoever received the last command knows that it is too old, however young it looked when it was given here.
   void forget() { received_.reset(); }
 
-  /// What the drive shall do from `now` for one period. Full braking begins so early that no period in which the command
-  /// turns too old is still driven: later than timeout - period and no later than timeout after the last command. From
-  /// then on the speed falls at `deceleration`, the turning rate at `turn_acceleration`, both to zero.
+  /// What the drive shall do from `now` for one period. Full braking begins so early that no period in which the
+  /// command turns too old is still driven: later than timeout - period and no later than timeout after the last
+  /// command. From then on the speed falls at `deceleration`, the turning rate at `turn_acceleration`, both to zero.
   geometry::Twist2 step(Time now);
 
   DriveState state() const { return state_; }

@@ -24,15 +24,16 @@ struct DriveGuardComponentParams {
   }
 };
 
-/// Stands between whoever steers and the drive (drive_guard.hpp): commands come as they like and leave at a steady rate.
+/// Stands between whoever steers and the drive (drive_guard.hpp): commands come as they like and leave at a steady
+/// rate.
 class DriveGuardComponent final : public Component {
   DriveGuardComponentParams params_ = checked(parameters<DriveGuardComponentParams>());
   DriveGuard guard_{params_.guard};
   // The port judges the age by when a command was received, the guard by when it was handled. They differ when this
   // component was held up, and then the port is right.
-  Input<geometry_msgs::msg::TwistStamped> wanted_{
-      this, "cmd_vel_raw", qos::command.max_age(params_.guard.timeout - params_.guard.period),
-      &DriveGuardComponent::on_command, "Speed that the controller wants."};
+  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw",
+                                                  qos::command.max_age(params_.guard.timeout - params_.guard.period),
+                                                  &DriveGuardComponent::on_command, "Speed that the controller wants."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel", qos::command, "Speed for the drive."};
   Timer tick_{this, params_.guard.period, &DriveGuardComponent::on_tick};
   std::string frame_;

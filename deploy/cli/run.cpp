@@ -171,8 +171,8 @@ int run(const RunRequest& request) {
   try {
     Progress progress(std::min(limit, mission_timeout(composition)), isatty(STDERR_FILENO) == 1);
     outcome = run_composition(composition, registry, options, [&](Duration simulated) { progress.show(simulated); });
-  } catch (const ConfigError&) {
-    // Refused after all, before anything ran: leave nothing behind.
+  } catch (...) {
+    // A failing handler fails its component, not the run: this is a container that could not be made. Leave nothing behind.
     std::error_code ignored;
     fs::remove_all(options.run_folder, ignored);
     if (made_runs) fs::remove(request.runs_folder, ignored);

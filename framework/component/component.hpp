@@ -59,6 +59,9 @@ class Component {
     return load_parameters<P>(*parameters_);
   }
 
+  /// Only the declarations are wanted: a required parameter may still have its default (an empty path, an empty map).
+  bool describing() const { return describing_; }
+
   /// Handlers block for long (a planner): the component gets a thread of its own instead of the container's.
   void wants_own_thread() { own_thread_ = true; }
 

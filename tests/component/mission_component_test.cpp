@@ -124,7 +124,8 @@ TEST(MissionComponent, ReportsAbortedWhenTheRunIsEndedFromOutside) {
 
 TEST(MissionComponent, RefusesAMissionWithoutGoals) {
   EXPECT_THROW(Harness("observe/mission", {{"goals", ValueMap{}}}), ParameterError);
-  EXPECT_THROW(Harness("observe/mission", {{"goals", ValueMap{{"r1", ValueMap{{"at", ValueList{}}}}}}}), ParameterError);
+  EXPECT_THROW(Harness("observe/mission", {{"goals", ValueMap{{"r1", ValueMap{{"at", ValueList{}}}}}}}),
+               ParameterError);
 }
 
 }  // namespace

@@ -28,7 +28,8 @@ double rest_offset(const ForceParams& params, double g) {
   return -robot.x();
 }
 
-/// The distance from an obstacle between robot and goal at which attraction and repulsion are equal, `rho_g` from the goal.
+/// The distance from an obstacle between robot and goal at which attraction and repulsion are equal, `rho_g` from the
+/// goal.
 double stand_off(const ForceParams& params, double rho_g) {
   double near = 0.01, far = params.rho0;
   for (int i = 0; i < 60; ++i) {

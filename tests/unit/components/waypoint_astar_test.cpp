@@ -14,12 +14,12 @@ using geometry::Vector2;
 using Nodes = std::vector<std::size_t>;
 
 // The laboratory of Çınar, Parlaktuna and Yazıcı: table 1's waypoints, and the adjacency that the paper does not print.
-const std::vector<Vector2> lab_nodes{{0, 0},       {4.0, 3.0},  {5.0, 5.4},  {0.7, 9.1},  {11.5, 7.5},
-                                     {16.0, 7.8},  {17.0, 3.0}, {15.2, 1.0}, {24.0, 0.7}, {30.4, 3.9},
-                                     {30.8, 9.0},  {29.0, 15.8}, {15.7, 15.2}, {4.2, 15.7}};
-const std::vector<std::pair<std::size_t, std::size_t>> lab_edges{
-    {0, 1}, {1, 2}, {2, 3}, {2, 4}, {3, 13}, {4, 5}, {5, 6}, {5, 12}, {6, 7}, {7, 8}, {8, 9}, {9, 10}, {10, 11},
-    {11, 12}, {12, 13}};
+const std::vector<Vector2> lab_nodes{{0, 0},      {4.0, 3.0},   {5.0, 5.4},   {0.7, 9.1},  {11.5, 7.5},
+                                     {16.0, 7.8}, {17.0, 3.0},  {15.2, 1.0},  {24.0, 0.7}, {30.4, 3.9},
+                                     {30.8, 9.0}, {29.0, 15.8}, {15.7, 15.2}, {4.2, 15.7}};
+const std::vector<std::pair<std::size_t, std::size_t>> lab_edges{{0, 1}, {1, 2},  {2, 3},   {2, 4},   {3, 13},
+                                                                 {4, 5}, {5, 6},  {5, 12},  {6, 7},   {7, 8},
+                                                                 {8, 9}, {9, 10}, {10, 11}, {11, 12}, {12, 13}};
 
 WaypointGraph lab() {
   WaypointGraph graph(lab_nodes);
@@ -34,9 +34,9 @@ WaypointGraph fully_connected(const std::vector<Vector2>& nodes) {
   return graph;
 }
 
-// The search as the paper prints it: every node starts in OPEN, no node gets a better parent later, the successor with the
-// lowest f over all of CLOSED is taken, the current node is pushed on one list of parents, and the search ends as soon as
-// the goal is generated.
+// The search as the paper prints it: every node starts in OPEN, no node gets a better parent later, the successor with
+// the lowest f over all of CLOSED is taken, the current node is pushed on one list of parents, and the search ends as
+// soon as the goal is generated.
 Nodes route_of_the_papers_pseudo_code(const WaypointGraph& graph, std::size_t start, std::size_t goal) {
   std::vector<double> g(graph.size(), 0.0);
   std::vector<bool> closed(graph.size(), false);
@@ -92,23 +92,21 @@ TEST(WaypointAstar, GoesStraightToTheGoalWhenFullyConnected) {
 }
 
 TEST(WaypointAstar, EstimatesWithTheStraightLineOfTheTable) {
-  const double h[] = {17.800, 12.924, 11.259, 15.355, 4.510,  0.0,    4.903,
+  const double h[] = {17.800, 12.924, 11.259, 15.355, 4.510,  0.0,   4.903,
                       6.847,  10.696, 14.919, 14.849, 15.264, 7.406, 14.200};
   const WaypointGraph graph = lab();
   for (std::size_t node = 0; node < graph.size(); ++node) EXPECT_NEAR(graph.distance(node, 5), h[node], 0.0005) << node;
 }
 
 TEST(WaypointAstar, KnowsTheLengthsOfTheDeclaredEdges) {
-  const double length[] = {5.000, 2.600, 5.673, 6.831, 7.471,  4.510,  4.903, 7.406,
+  const double length[] = {5.000, 2.600, 5.673, 6.831, 7.471, 4.510,  4.903, 7.406,
                            2.691, 8.805, 7.155, 5.116, 7.034, 13.314, 11.511};
   const WaypointGraph graph = lab();
   for (std::size_t i = 0; i < lab_edges.size(); ++i)
     EXPECT_NEAR(graph.distance(lab_edges[i].first, lab_edges[i].second), length[i], 0.0005) << i;
 }
 
-TEST(WaypointAstar, ExpandsOnlyTheNodesThatCanLieOnTheWay) {
-  EXPECT_EQ(find_route(lab(), 0, 5).expanded, 5u);
-}
+TEST(WaypointAstar, ExpandsOnlyTheNodesThatCanLieOnTheWay) { EXPECT_EQ(find_route(lab(), 0, 5).expanded, 5u); }
 
 TEST(WaypointAstar, PutsPositionsOnTheNearestNode) {
   const Route route = find_route(lab(), Vector2(0.3, -0.2), Vector2(15.9, 7.8), 1.0);
