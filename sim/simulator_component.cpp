@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
@@ -90,44 +91,25 @@ struct SimulatorParams {
   }
 };
 
-builtin_interfaces::msg::Time to_message(Time time) {
-  const auto since = time.time_since_epoch();
-  const auto whole = std::chrono::floor<std::chrono::seconds>(since);
-  builtin_interfaces::msg::Time message;
-  message.sec = static_cast<std::int32_t>(whole.count());
-  message.nanosec = static_cast<std::uint32_t>((since - whole).count());
-  return message;
-}
-
-void set_header(std_msgs::msg::Header& header, Time stamp, const std::string& frame) {
-  header.stamp = to_message(stamp);
-  header.frame_id = frame;
-}
-
 void set_odometry(nav_msgs::msg::Odometry& message, const Pose2& pose, const Twist2& twist) {
-  message.pose.pose.position.x = pose.x;
-  message.pose.pose.position.y = pose.y;
-  message.pose.pose.orientation.z = std::sin(0.5 * pose.yaw);
-  message.pose.pose.orientation.w = std::cos(0.5 * pose.yaw);
-  message.twist.twist.linear.x = twist.linear;
-  message.twist.twist.angular.z = twist.angular;
+  message.pose.pose = geometry::to_message(pose);
+  message.twist.twist = geometry::to_message(twist);
 }
 
 geometry_msgs::msg::TransformStamped transform(Time stamp, const std::string& parent, const std::string& child,
                                                const Pose2& pose) {
   geometry_msgs::msg::TransformStamped message;
-  set_header(message.header, stamp, parent);
+  geometry::set_header(message.header, stamp, parent);
   message.child_frame_id = child;
   message.transform.translation.x = pose.x;
   message.transform.translation.y = pose.y;
-  message.transform.rotation.z = std::sin(0.5 * pose.yaw);
-  message.transform.rotation.w = std::cos(0.5 * pose.yaw);
+  message.transform.rotation = geometry::to_message(pose).orientation;
   return message;
 }
 
 kervan_msgs::msg::Outline drawing(const World& world, Time stamp) {
   kervan_msgs::msg::Outline outline;
-  set_header(outline.header, stamp, "map");
+  geometry::set_header(outline.header, stamp, "map");
   for (const Segment& s : world.segments()) {
     auto& drawn = outline.segments.emplace_back();
     drawn.x1 = s.a.x();
@@ -195,7 +177,7 @@ class RobotPorts {
  private:
   void publish_truth(const Robot& robot, Time now) {
     auto message = truth_.loan();
-    set_header(message->header, now, "map");
+    geometry::set_header(message->header, now, "map");
     message->child_frame_id = base_frame_;
     set_odometry(*message, robot.pose(), robot.speed());
     truth_.publish(std::move(message));
@@ -203,7 +185,7 @@ class RobotPorts {
 
   void publish_odometry(const OdometryReading& reading, Time now) {
     auto message = odom_.loan();
-    set_header(message->header, now, odom_frame_);
+    geometry::set_header(message->header, now, odom_frame_);
     message->child_frame_id = base_frame_;
     set_odometry(*message, reading.pose, reading.twist);
     odom_.publish(std::move(message));
@@ -212,7 +194,7 @@ class RobotPorts {
   void publish_sonar(const Robot& robot, Time now) {
     const SonarRing& ring = robot.setup().model.sonars;
     auto message = sonar_.loan();
-    set_header(message->header, now, base_frame_);
+    geometry::set_header(message->header, now, base_frame_);
     message->field_of_view = static_cast<float>(ring.field_of_view);
     message->min_range = static_cast<float>(ring.min_range);
     message->max_range = static_cast<float>(ring.max_range);
@@ -232,7 +214,7 @@ class RobotPorts {
     if (body.contacts() > contacts_) {
       contacts_ = body.contacts();
       auto message = contact_.loan();
-      set_header(message->header, now, "map");
+      geometry::set_header(message->header, now, "map");
       message->robot = robot.name();
       message->other = "world";
       message->point.x = body.last_contact().point.x();
@@ -243,7 +225,7 @@ class RobotPorts {
     if (body.min_clearance() < min_clearance_) {
       min_clearance_ = body.min_clearance();
       auto message = clearance_.loan();
-      set_header(message->header, now, base_frame_);
+      geometry::set_header(message->header, now, base_frame_);
       message->field_of_view = static_cast<float>(2.0 * std::numbers::pi);
       message->max_range = std::numeric_limits<float>::infinity();
       message->range = static_cast<float>(min_clearance_);
@@ -317,7 +299,7 @@ class SimulatorComponent final : public Component {
 
   void publish(Time now) {
     auto clock = clock_.loan();
-    clock->clock = to_message(now);
+    clock->clock = geometry::to_message(now);
     clock_.publish(std::move(clock));
     auto frames = tf_.loan();
     for (std::size_t i = 0; i < ports_.size(); ++i)

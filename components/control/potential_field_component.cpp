@@ -5,7 +5,7 @@
 
 #include "components/control/nearest_echo.hpp"
 #include "components/control/potential_field.hpp"
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
@@ -79,15 +79,15 @@ class PotentialFieldComponent final : public Component {
            static_cast<double>(reading.range)});
     obstacle_ = nearest_echo(echoes_, static_cast<double>(sonar.max_range));
     if (const auto* odometry = odom_.latest(); obstacle_ && odometry)
-      obstacle_ = components::pose_of(odometry->pose.pose) * *obstacle_;
+      obstacle_ = geometry::pose_of(odometry->pose.pose) * *obstacle_;
   }
 
   void on_tick(Time now) {
     for (const std::string& why : {waypoint_.missing(), odom_.missing(), sonar_.missing()})
       if (!why.empty()) return stand(now, why);
     const auto& odometry = *odom_.latest();
-    const geometry::Pose2 robot = components::pose_of(odometry.pose.pose);
-    const geometry::Vector2 goal = components::position_of(waypoint_.latest()->pose);
+    const geometry::Pose2 robot = geometry::pose_of(odometry.pose.pose);
+    const geometry::Vector2 goal = geometry::position_of(waypoint_.latest()->pose);
     if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return stand(now, "odom: the pose is not finite");
     if (!goal.allFinite()) return stand(now, "waypoint: the position is not finite");
 
@@ -108,14 +108,14 @@ class PotentialFieldComponent final : public Component {
   void command(Time now, const geometry::Twist2& twist) {
     auto message = cmd_vel_.loan();
     const auto* odometry = odom_.latest();
-    components::set_header(message->header, now, odometry ? odometry->child_frame_id : std::string());
-    message->twist = components::to_message(twist);
+    geometry::set_header(message->header, now, odometry ? odometry->child_frame_id : std::string());
+    message->twist = geometry::to_message(twist);
     cmd_vel_.publish(std::move(message));
   }
 
   void publish_force(Time now, const std::string& frame, const geometry::Pose2& robot, const Force& force) {
     auto message = force_.loan();
-    components::set_header(message->header, now, frame);
+    geometry::set_header(message->header, now, frame);
     message->position.x = robot.x;
     message->position.y = robot.y;
     message->attraction.x = force.attraction.x();

@@ -1,7 +1,7 @@
 #include <vector>
 
 #include "components/control/route_follower.hpp"
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
@@ -40,18 +40,18 @@ class RouteFollowerComponent final : public Component {
 
   void on_route(const nav_msgs::msg::Path& route, Time now) {
     std::vector<geometry::Vector2> points;
-    for (const auto& pose : route.poses) points.push_back(components::position_of(pose.pose));
+    for (const auto& pose : route.poses) points.push_back(geometry::position_of(pose.pose));
     frame_ = route.header.frame_id;
     const auto* odometry = odom_.latest();
-    if (points.empty() && odometry) points.push_back(components::position_of(odometry->pose.pose));
+    if (points.empty() && odometry) points.push_back(geometry::position_of(odometry->pose.pose));
     follower_.start(std::move(points));
-    if (odometry) follower_.advance(components::position_of(odometry->pose.pose));
+    if (odometry) follower_.advance(geometry::position_of(odometry->pose.pose));
     publish_waypoint(now);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
     const std::size_t before = follower_.index();
-    follower_.advance(components::position_of(odometry.pose.pose));
+    follower_.advance(geometry::position_of(odometry.pose.pose));
     if (follower_.index() != before) publish_waypoint(now);
   }
 
@@ -59,8 +59,8 @@ class RouteFollowerComponent final : public Component {
     const auto at = follower_.waypoint();
     if (!at) return;
     auto waypoint = waypoint_.loan();
-    components::set_header(waypoint->header, now, frame_);
-    waypoint->pose = components::to_message(geometry::Pose2{at->x(), at->y(), 0.0});
+    geometry::set_header(waypoint->header, now, frame_);
+    waypoint->pose = geometry::to_message(geometry::Pose2{at->x(), at->y(), 0.0});
     waypoint_.publish(std::move(waypoint));
   }
 };

@@ -11,7 +11,7 @@
 #include "components/observe/decimal.hpp"
 #include "components/observe/map_drawing.hpp"
 #include "components/observe/trajectory_csv.hpp"
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
@@ -72,11 +72,11 @@ class Subject {
     for (const auto& contact : contact_.take()) drawn_.contacts.emplace_back(contact->point.x, contact->point.y);
     const auto* truth = truth_.latest();
     if (!truth) return;
-    TrajectoryRow row{time, drawn_.name, components::pose_of(truth->pose.pose), std::nullopt,
-                      components::twist_of(truth->twist.twist)};
+    TrajectoryRow row{time, drawn_.name, geometry::pose_of(truth->pose.pose), std::nullopt,
+                      geometry::twist_of(truth->twist.twist)};
     drawn_.truth.push_back(row.truth.position());
     if (const auto* odometry = odom_.latest()) {
-      row.odom = components::pose_of(odometry->pose.pose);
+      row.odom = geometry::pose_of(odometry->pose.pose);
       drawn_.odometry.push_back(row.odom->position());
     }
     if (table) table << to_csv(row) << '\n';
@@ -86,8 +86,8 @@ class Subject {
     DrawnRobot robot = drawn_;
     robot.tolerance = tolerance;
     if (const auto* route = route_.latest())
-      for (const auto& pose : route->poses) robot.route.push_back(components::position_of(pose.pose));
-    if (const auto* goal = goal_.latest()) mark_goal(robot, components::position_of(goal->pose));
+      for (const auto& pose : route->poses) robot.route.push_back(geometry::position_of(pose.pose));
+    if (const auto* goal = goal_.latest()) mark_goal(robot, geometry::position_of(goal->pose));
     if (result)
       for (const auto& figures : result->robots)
         if (figures.robot == robot.name) add_figures(robot, figures);

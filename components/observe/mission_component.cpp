@@ -9,7 +9,7 @@
 
 #include "components/observe/decimal.hpp"
 #include "components/observe/mission_score.hpp"
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
@@ -70,7 +70,7 @@ class Contender {
     for ([[maybe_unused]] const auto& contact : contact_.take()) score_->contact();
     for (const auto& clearance : clearance_.take()) score_->clearance(static_cast<double>(clearance->range));
     for (const auto& truth : truth_.take())
-      score_->truth(now, components::pose_of(truth->pose.pose), components::twist_of(truth->twist.twist));
+      score_->truth(now, geometry::pose_of(truth->pose.pose), geometry::twist_of(truth->twist.twist));
     score_->tick(now);
     if (score_->figures().goal != goal) publish_goal(now);
   }
@@ -96,8 +96,8 @@ class Contender {
  private:
   void publish_goal(Time now) {
     geometry_msgs::msg::PoseStamped goal;
-    components::set_header(goal.header, now, "map");
-    goal.pose = components::to_message(geometry::Pose2{score_->goal().x(), score_->goal().y(), 0.0});
+    geometry::set_header(goal.header, now, "map");
+    goal.pose = geometry::to_message(geometry::Pose2{score_->goal().x(), score_->goal().y(), 0.0});
     goal_.publish(goal);
   }
 
@@ -174,7 +174,7 @@ class MissionComponent final : public Component {
   void publish_result(Time now, MissionOutcome outcome, const std::string& why) {
     judged_ = true;
     kervan_msgs::msg::MissionResult result;
-    components::set_header(result.header, now, "map");
+    geometry::set_header(result.header, now, "map");
     result.result = outcome;
     result.reason = why;
     for (const auto& robot : robots_) result.robots.push_back(robot.result());

@@ -1,7 +1,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "components/planning/waypoint_astar.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
@@ -82,15 +82,15 @@ class WaypointAstarComponent final : public Component {
 
   void plan(const nav_msgs::msg::Odometry& odometry, Time now) {
     pending_ = false;
-    const geometry::Vector2 goal = components::position_of(wanted_.pose);
-    const Route route = find_route(graph_, components::position_of(odometry.pose.pose), goal, params_.reach);
+    const geometry::Vector2 goal = geometry::position_of(wanted_.pose);
+    const Route route = find_route(graph_, geometry::position_of(odometry.pose.pose), goal, params_.reach);
 
     nav_msgs::msg::Path path;
-    components::set_header(path.header, now, wanted_.header.frame_id);
+    geometry::set_header(path.header, now, wanted_.header.frame_id);
     const auto add = [&path](const geometry::Vector2& at) {
       path.poses.emplace_back();
       path.poses.back().header = path.header;
-      path.poses.back().pose = components::to_message(geometry::Pose2{at.x(), at.y(), 0.0});
+      path.poses.back().pose = geometry::to_message(geometry::Pose2{at.x(), at.y(), 0.0});
     };
     for (const std::size_t node : route.nodes) add(graph_.position(node));
     // The goal need not be a waypoint; the last metres to it are driven straight.

@@ -1,6 +1,6 @@
 #include <spdlog/logger.h>
 
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "components/safety/drive_guard.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
@@ -49,7 +49,7 @@ class DriveGuardComponent final : public Component {
   }
 
   void on_command(const geometry_msgs::msg::TwistStamped& wanted, Time now) {
-    last_refused_ = !guard_.command(now, components::twist_of(wanted.twist));
+    last_refused_ = !guard_.command(now, geometry::twist_of(wanted.twist));
     frame_ = wanted.header.frame_id;
   }
 
@@ -73,8 +73,8 @@ class DriveGuardComponent final : public Component {
 
   void publish(Time now, const geometry::Twist2& twist) {
     auto message = cmd_vel_.loan();
-    components::set_header(message->header, now, frame_);
-    message->twist = components::to_message(twist);
+    geometry::set_header(message->header, now, frame_);
+    message->twist = geometry::to_message(twist);
     cmd_vel_.publish(std::move(message));
   }
 };

@@ -13,7 +13,7 @@ const ComponentClass& class_of(ComponentRegistry& registry, const std::string& t
 }  // namespace
 
 std::vector<ParameterInfo> InstalledComponents::parameters(const std::string& type) {
-  return kervan::describe(class_of(registry_, type), {}).parameters;
+  return parameters_of(class_of(registry_, type));
 }
 
 Manifest InstalledComponents::manifest(const std::string& type, const ValueMap& values) {

@@ -35,13 +35,18 @@ Component::Component() {
   static const ValueMap no_parameters;
   name_ = current_setup->name;
   describing_ = current_setup->describing;
+  declared_ = current_setup->declared;
   parameters_ = current_setup->parameters ? current_setup->parameters : &no_parameters;
   run_folder_ = current_setup->run_folder;
 }
 
 Component::~Component() = default;
 
-void Component::check_parameters() const { validate(schema_, *parameters_, !describing_); }
+void Component::declare_parameters(std::vector<ParameterInfo> schema) {
+  schema_ = std::move(schema);
+  if (declared_) *declared_ = schema_;
+  validate(schema_, *parameters_, !describing_);
+}
 
 void Component::report_active() {
   if (instance_ && state_ != ComponentState::failed) instance_->set_state(ComponentState::active, {});
@@ -126,6 +131,20 @@ Manifest describe(const ComponentClass& type, const ValueMap& parameters) {
   for (const Timer* timer : component->timers_) manifest.timers.push_back({timer->period()});
   manifest.own_thread = component->own_thread_;
   return manifest;
+}
+
+std::vector<ParameterInfo> parameters_of(const ComponentClass& type) {
+  std::vector<ParameterInfo> declared;
+  ComponentSetup setup;
+  setup.name = type.type;
+  setup.describing = true;
+  setup.declared = &declared;
+  try {
+    construct(type, setup);
+  } catch (const ConfigError&) {  // it cannot do without a file that a parameter must name
+  } catch (const ParameterError&) {
+  }
+  return declared;
 }
 
 const PortInfo* Manifest::port(const std::string& name) const {

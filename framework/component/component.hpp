@@ -36,6 +36,7 @@ struct ComponentSetup {
   const ValueMap* parameters = nullptr;
   std::filesystem::path run_folder;  ///< empty when nothing is to be written
   bool describing = false;           ///< only the declarations matter: a required parameter may be missing
+  std::vector<ParameterInfo>* declared = nullptr;  ///< receives the parameters, also if the constructor throws later
 };
 
 class Component {
@@ -54,8 +55,7 @@ class Component {
   /// The parameters of the composition, checked against P's describe lines. Throws ParameterError.
   template <class P>
   P parameters() {
-    schema_ = schema_of<P>();
-    check_parameters();
+    declare_parameters(schema_of<P>());
     return load_parameters<P>(*parameters_);
   }
 
@@ -96,11 +96,12 @@ class Component {
   friend class runtime::ComponentInstance;
   friend Manifest describe(const struct ComponentClass& type, const ValueMap& parameters);
 
-  void check_parameters() const;
+  void declare_parameters(std::vector<ParameterInfo> schema);
 
   std::string name_;
   bool describing_;
   const ValueMap* parameters_;
+  std::vector<ParameterInfo>* declared_;  ///< only valid during construction
   std::filesystem::path run_folder_;
   std::vector<ParameterInfo> schema_;
   std::vector<InputBase*> inputs_;
@@ -124,9 +125,12 @@ struct ComponentClass {
 /// Throws ParameterError, or ConfigError when a file that a parameter names is wrong.
 std::unique_ptr<Component> construct(const ComponentClass& type, const ComponentSetup& setup);
 
-/// The manifest of a type with these parameters, by construction. A required parameter may be missing: then the
-/// constructor sees its default (an empty path, an empty map) and must cope with it.
+/// The manifest of a type with these parameters, by construction. Required parameters may be missing; a constructor that
+/// cannot do without them throws, unless it asks describing(). Throws what the constructor throws.
 Manifest describe(const ComponentClass& type, const ValueMap& parameters);
+
+/// The parameters of a type, known even if it cannot be constructed without some of them.
+std::vector<ParameterInfo> parameters_of(const ComponentClass& type);
 
 }  // namespace kervan
 

@@ -26,10 +26,10 @@ std::vector<fs::path> ComponentRegistry::default_folders() {
   return folders;
 }
 
-void ComponentRegistry::add(const ComponentClass& type) { types_[type.type] = &type; }
+void ComponentRegistry::add(const ComponentClass& type) { types_[type.type] = type; }
 
 const ComponentClass* ComponentRegistry::find(const std::string& name) {
-  if (const auto found = types_.find(name); found != types_.end()) return found->second;
+  if (const auto found = types_.find(name); found != types_.end()) return &found->second;
   for (const fs::path& folder : folders_) {
     const fs::path file = folder / (name + ".so");
     if (!fs::is_regular_file(file)) continue;
@@ -40,8 +40,7 @@ const ComponentClass* ComponentRegistry::find(const std::string& name) {
     if (!type) throw std::runtime_error(file.string() + " is no component module: it has no KERVAN_COMPONENT");
     if (name != type->type)
       throw std::runtime_error(file.string() + " holds the component " + type->type + ", not " + name);
-    types_[name] = type;
-    return type;
+    return &types_.emplace(name, *type).first->second;
   }
   return nullptr;
 }

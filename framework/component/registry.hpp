@@ -33,7 +33,7 @@ class ComponentRegistry {
 
  private:
   std::vector<std::filesystem::path> folders_;
-  std::map<std::string, const ComponentClass*> types_;
+  std::map<std::string, ComponentClass> types_;
 };
 
 }  // namespace kervan

@@ -12,6 +12,7 @@
 #include "framework/component/sample.hpp"
 #include "framework/dds/endpoint.hpp"
 #include "framework/dds/type_support.hpp"
+#include "framework/geometry/messages.hpp"
 #include "rcl_interfaces/msg/Log.hpp"
 
 namespace kervan::runtime {
@@ -52,9 +53,7 @@ class RosoutSink final : public spdlog::sinks::base_sink<std::mutex> {
     namespace level = rcl_interfaces::msg::Log_Constants;
     dds::SampleBlock* block = writer_.loan(true);
     auto& message = *static_cast<rcl_interfaces::msg::Log*>(dds::mutable_value_of(block));
-    const auto since = log_time.time_since_epoch().count();
-    message.stamp.sec = static_cast<std::int32_t>(since / 1'000'000'000);
-    message.stamp.nanosec = static_cast<std::uint32_t>(since % 1'000'000'000);
+    message.stamp = geometry::to_message(log_time);
     message.level = line.level <= spdlog::level::debug  ? level::DEBUG
                     : line.level == spdlog::level::info ? level::INFO
                     : line.level == spdlog::level::warn ? level::WARN

@@ -1,6 +1,7 @@
 #include "framework/runtime/status.hpp"
 
 #include "framework/component/sample.hpp"
+#include "framework/geometry/messages.hpp"
 #include "kervan_msgs/msg/ComponentStatus.hpp"
 
 namespace kervan::runtime {
@@ -34,8 +35,7 @@ void StatusWriter::publish(const ComponentInstance& instance, const std::string&
   dds::SampleBlock* block = writer_.loan(true);
   auto& message = *static_cast<kervan_msgs::msg::ComponentStatus*>(dds::mutable_value_of(block));
   message.component = instance.name();
-  message.stamp.sec = static_cast<std::int32_t>(now.time_since_epoch().count() / 1'000'000'000);
-  message.stamp.nanosec = static_cast<std::uint32_t>(now.time_since_epoch().count() % 1'000'000'000);
+  message.stamp = geometry::to_message(now);
   message.container = container;
   message.state = to_message(instance.state());
   message.reason = instance.reason();

@@ -1,7 +1,7 @@
 /// Tests a component by itself: feed its inputs, advance logical time, read its outputs and its state. It runs in lockstep
 /// in a domain without a network, so nothing sleeps, nothing is flaky, and the same test always does the same.
 ///
-///   kervan::test::Harness harness("control/potential_field", {{"law", "gecui"}});
+///   kervan::test::Harness harness("control/potential_field", {{"law", "potential_gecui"}});
 ///   harness.feed("odom", odometry);
 ///   harness.advance(100ms);
 ///   EXPECT_GT(harness.latest<geometry_msgs::msg::TwistStamped>("cmd_vel_raw")->twist.linear.x, 0.0);

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <string>
 
-#include "components/plane_messages.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/component/value.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
@@ -16,22 +16,22 @@ inline nav_msgs::msg::Odometry odometry_at(const geometry::Pose2& pose, const ge
   nav_msgs::msg::Odometry message;
   message.header.frame_id = "odom";
   message.child_frame_id = "base_link";
-  message.pose.pose = components::to_message(pose);
-  message.twist.twist = components::to_message(twist);
+  message.pose.pose = geometry::to_message(pose);
+  message.twist.twist = geometry::to_message(twist);
   return message;
 }
 
 inline geometry_msgs::msg::PoseStamped pose_at(double x, double y) {
   geometry_msgs::msg::PoseStamped message;
   message.header.frame_id = "map";
-  message.pose = components::to_message(geometry::Pose2{x, y, 0.0});
+  message.pose = geometry::to_message(geometry::Pose2{x, y, 0.0});
   return message;
 }
 
 inline geometry_msgs::msg::TwistStamped twist_of(double linear, double angular) {
   geometry_msgs::msg::TwistStamped message;
   message.header.frame_id = "base_link";
-  message.twist = components::to_message(geometry::Twist2{linear, angular});
+  message.twist = geometry::to_message(geometry::Twist2{linear, angular});
   return message;
 }
 

@@ -13,7 +13,7 @@
 #include "geometry_msgs/msg/Twist.hpp"
 #include "std_msgs/msg/Header.hpp"
 
-namespace kervan::components {
+namespace kervan::geometry {
 
 inline builtin_interfaces::msg::Time to_message(Time time) {
   constexpr std::int64_t second = 1'000'000'000;
@@ -30,19 +30,19 @@ inline void set_header(std_msgs::msg::Header& header, Time stamp, const std::str
   header.frame_id = frame;
 }
 
-inline geometry::Vector2 position_of(const geometry_msgs::msg::Pose& pose) {
+inline Vector2 position_of(const geometry_msgs::msg::Pose& pose) {
   return {pose.position.x, pose.position.y};
 }
 
-inline geometry::Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
+inline Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
   const auto& q = pose.orientation;
   return {pose.position.x, pose.position.y,
           std::atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z))};
 }
 
-inline geometry::Twist2 twist_of(const geometry_msgs::msg::Twist& twist) { return {twist.linear.x, twist.angular.z}; }
+inline Twist2 twist_of(const geometry_msgs::msg::Twist& twist) { return {twist.linear.x, twist.angular.z}; }
 
-inline geometry_msgs::msg::Pose to_message(const geometry::Pose2& pose) {
+inline geometry_msgs::msg::Pose to_message(const Pose2& pose) {
   geometry_msgs::msg::Pose message;
   message.position.x = pose.x;
   message.position.y = pose.y;
@@ -51,11 +51,11 @@ inline geometry_msgs::msg::Pose to_message(const geometry::Pose2& pose) {
   return message;
 }
 
-inline geometry_msgs::msg::Twist to_message(const geometry::Twist2& twist) {
+inline geometry_msgs::msg::Twist to_message(const Twist2& twist) {
   geometry_msgs::msg::Twist message;
   message.linear.x = twist.linear;
   message.angular.z = twist.angular;
   return message;
 }
 
-}  // namespace kervan::components
+}  // namespace kervan::geometry
