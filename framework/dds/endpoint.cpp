@@ -6,6 +6,9 @@
 #include <dds/ddsi/q_protocol.h>
 
 #include <cstdio>
+#include <mutex>
+#include <type_traits>
+#include <unordered_set>
 
 #include "framework/component/sample.hpp"
 #include "framework/dds/sample_block.hpp"
@@ -54,35 +57,69 @@ QosHandle endpoint_qos(const QosProfile& profile, CyclonePart part) {
 
 /// Kervan's reader history cache. Cyclone calls store() for each sample instead of keeping it, so there is one cache with
 /// one meaning of history, lifespan and ownership: the port's.
-struct ReaderCache {
-  dds_rhc base;
-  SampleSink* sink;
+///
+/// It holds on to the entries of Cyclone's instance map while their instances live. Otherwise every publish would make the
+/// entry anew and hand it to the garbage collector's thread, which costs more than the hop itself.
+class ReaderCache {
+ public:
+  ReaderCache(const dds_rhc_ops& operations, SampleSink& sink) : sink_(sink) { base_.common.ops = &operations; }
+  ~ReaderCache() {
+    for (ddsi_tkmap_instance* instance : instances_) ddsi_tkmap_instance_unref(map_, instance);
+  }
+  ReaderCache(const ReaderCache&) = delete;
+  ReaderCache& operator=(const ReaderCache&) = delete;
+
+  static ReaderCache& of(void* rhc) { return *static_cast<ReaderCache*>(rhc); }
+  dds_rhc* base() { return &base_; }
+  SampleSink& sink() { return sink_; }
+  void use(ddsi_tkmap* map) { map_ = map; }
+
+  void store(const ddsi_writer_info& writer, ddsi_serdata* sample, ddsi_tkmap_instance* instance) {
+    // A writer that leaves tells so through unregister_wr; an unregistering sample carries no data.
+    const bool dispose = sample->statusinfo & NN_STATUSINFO_DISPOSE;
+    if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !dispose && sample->kind != SDK_DATA) return;
+    hold(instance);
+    sink_.on_sample({as_block(sample), writer.iid, instance->m_iid, writer.ownership_strength});
+    if (dispose) let_go(instance);
+  }
+
+ private:
+  void hold(ddsi_tkmap_instance* instance) {
+    if (newest_ == instance) return;
+    newest_ = instance;
+    const std::lock_guard lock(mutex_);
+    if (instances_.insert(instance).second) ddsi_tkmap_instance_ref(instance);
+  }
+  void let_go(ddsi_tkmap_instance* instance) {
+    newest_ = nullptr;
+    const std::lock_guard lock(mutex_);
+    if (instances_.erase(instance) != 0) ddsi_tkmap_instance_unref(map_, instance);
+  }
+
+  dds_rhc base_{};  // first: Cyclone's pointer to it is a pointer to this object
+  SampleSink& sink_;
+  ddsi_tkmap* map_ = nullptr;
+  std::atomic<const ddsi_tkmap_instance*> newest_{nullptr};  ///< held for sure: the case of keyless topics
+  std::mutex mutex_;
+  std::unordered_set<ddsi_tkmap_instance*> instances_;
 };
-
-SampleSink& sink_of(ddsi_rhc* rhc) { return *reinterpret_cast<ReaderCache*>(rhc)->sink; }
-
-bool store(ddsi_rhc* __restrict rhc, const ddsi_writer_info* __restrict writer, ddsi_serdata* __restrict sample,
-           ddsi_tkmap_instance* __restrict instance) {
-  // A writer that leaves tells so through unregister_wr; an unregistering sample carries no data.
-  if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !(sample->statusinfo & NN_STATUSINFO_DISPOSE) &&
-      sample->kind != SDK_DATA)
-    return true;
-  sink_of(rhc).on_sample({as_block(sample), writer->iid, instance->m_iid, writer->ownership_strength});
-  return true;  // a refusal would make the writer wait and retry, and other readers miss the sample
-}
 
 const dds_rhc_ops& reader_cache_operations() {
   static const dds_rhc_ops operations = [] {
     dds_rhc_ops ops{};
-    ops.rhc_ops.store = store;
+    ops.rhc_ops.store = [](ddsi_rhc* __restrict rhc, const ddsi_writer_info* __restrict writer,
+                           ddsi_serdata* __restrict sample, ddsi_tkmap_instance* __restrict instance) {
+      ReaderCache::of(rhc).store(*writer, sample, instance);
+      return true;  // a refusal would make the writer wait and retry, and other readers miss the sample
+    };
     ops.rhc_ops.unregister_wr = [](ddsi_rhc* __restrict rhc, const ddsi_writer_info* __restrict writer) {
-      sink_of(rhc).on_writer_gone(writer->iid);
+      ReaderCache::of(rhc).sink().on_writer_gone(writer->iid);
     };
     ops.rhc_ops.relinquish_ownership = [](ddsi_rhc* __restrict rhc, const std::uint64_t writer) {
-      sink_of(rhc).on_writer_gone(writer);
+      ReaderCache::of(rhc).sink().on_writer_gone(writer);
     };
     ops.rhc_ops.set_qos = [](ddsi_rhc*, const dds_qos*) {};
-    ops.rhc_ops.free = [](ddsi_rhc* rhc) { delete reinterpret_cast<ReaderCache*>(rhc); };
+    ops.rhc_ops.free = [](ddsi_rhc* rhc) { delete &ReaderCache::of(rhc); };
     // Nothing is kept here, so there is nothing to read.
     ops.read = ops.take = [](dds_rhc*, bool, void**, dds_sample_info_t*, std::uint32_t, std::uint32_t,
                              dds_instance_handle_t, dds_readcond*) -> std::int32_t { return 0; };
@@ -91,13 +128,16 @@ const dds_rhc_ops& reader_cache_operations() {
     ops.add_readcondition = [](dds_rhc*, dds_readcond*) { return false; };
     ops.remove_readcondition = [](dds_rhc*, dds_readcond*) {};
     ops.lock_samples = [](dds_rhc*) -> std::uint32_t { return 0; };
-    ops.associate = [](dds_rhc*, dds_reader*, const ddsi_sertype*, ddsi_tkmap*) -> dds_return_t {
+    ops.associate = [](dds_rhc* rhc, dds_reader*, const ddsi_sertype*, ddsi_tkmap* map) -> dds_return_t {
+      ReaderCache::of(rhc).use(map);
       return DDS_RETCODE_OK;
     };
     return ops;
   }();
   return operations;
 }
+
+static_assert(std::is_standard_layout_v<dds_rhc>);
 
 }  // namespace
 
@@ -107,9 +147,7 @@ Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type
   const QosHandle qos = endpoint_qos(profile, part);
   // Any budget a writer offers is good enough: it only says whether sending may wait for Cyclone's own thread.
   dds_qset_latency_budget(qos.get(), DDS_INFINITY);
-  auto* cache = new ReaderCache{};
-  cache->base.common.ops = &reader_cache_operations();
-  cache->sink = &sink;
+  auto* cache = new ReaderCache(reader_cache_operations(), sink);
   dds_listener_t* listener = dds_create_listener(&sink);
   dds_lset_subscription_matched(listener, [](dds_entity_t, dds_subscription_matched_status_t, void* to) {
     static_cast<SampleSink*>(to)->on_status();
@@ -117,7 +155,7 @@ Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type
   dds_lset_requested_incompatible_qos(listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t, void* to) {
     static_cast<SampleSink*>(to)->on_status();
   });
-  entity_ = dds_create_reader_rhc(domain.participant(), handle.entity, qos.get(), listener, &cache->base);
+  entity_ = dds_create_reader_rhc(domain.participant(), handle.entity, qos.get(), listener, cache->base());
   dds_delete_listener(listener);
   if (entity_ < 0)
     throw DdsError("cannot create a reader of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));

@@ -26,10 +26,22 @@ SampleCache::Instance& SampleCache::instance(std::uint64_t id) {
     if (instances_.empty()) instances_.push_back({.id = 0});
     return instances_.front();
   }
-  const auto found = std::find_if(instances_.begin(), instances_.end(), [&](const Instance& i) { return i.id == id; });
-  if (found != instances_.end()) return *found;
-  instances_.push_back({.id = id});
-  return instances_.back();
+  const auto [found, is_new] = index_.try_emplace(id, instances_.size());
+  if (is_new) instances_.push_back({.id = id});
+  return instances_[found->second];
+}
+
+/// Instances may come and go for ever; what is disposed of is swept out when it prevails, at constant cost per sample.
+void SampleCache::forget_disposed() {
+  if (disposed_ < 16 || disposed_ * 2 < instances_.size()) return;
+  const std::uint64_t newest = instances_[newest_].id;
+  std::erase_if(instances_, [&](const Instance& i) { return i.disposed && i.fresh == 0 && i.id != newest; });
+  index_.clear();
+  for (std::size_t i = 0; i < instances_.size(); ++i) {
+    index_[instances_[i].id] = i;
+    if (instances_[i].id == newest) newest_ = i;
+  }
+  disposed_ = 0;
 }
 
 bool SampleCache::owns(Instance& instance, const StagedSample& sample) {
@@ -74,19 +86,28 @@ void SampleCache::stage(const std::vector<StagedSample>& samples) {
     target.received = sample.received;
     if (target.newest) dds::release(target.newest);
     target.newest = nullptr;
-    if (!dds::is_disposed(sample.block)) {
-      dds::retain(sample.block);
-      target.newest = sample.block;
-    } else {
+    target.disposed = dds::is_disposed(sample.block);
+    if (target.disposed) {
       target.due = Time::max();
       target.owned = false;
+      ++disposed_;
+      // Nobody takes samples here, so nobody waits for the end of the instance either.
+      while (!queued_ && target.fresh > 0) drop_oldest_fresh(target);
+    } else {
+      dds::retain(sample.block);
+      target.newest = sample.block;
     }
     newest_ = static_cast<std::size_t>(&target - instances_.data());
     if (profile_.depth > 0 && target.fresh >= profile_.depth) drop_oldest_fresh(target);
+    if (target.disposed && !queued_) {
+      dds::release(sample.block);
+      continue;
+    }
     fresh_.push_back({sample.block, target.id, sample.received});
     ++target.fresh;
     ++live_fresh_;
   }
+  if (keyed_) forget_disposed();
 }
 
 dds::SampleBlock* SampleCache::take(Time now) {

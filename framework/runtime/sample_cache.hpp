@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <unordered_map>
 #include <vector>
 
 #include "framework/component/qos.hpp"
@@ -56,6 +57,9 @@ class SampleCache {
   /// The newest live sample of each instance, in order of first appearance. Not retained for the caller.
   std::vector<dds::SampleBlock*> instances(Time now) const;
 
+  /// Instances that take up memory, those disposed of a moment ago included.
+  std::size_t remembered_instances() const { return instances_.size(); }
+
   void writer_gone(unsigned writer);
 
   /// The earliest time at which an instance misses the deadline; Time::max() without one.
@@ -75,7 +79,8 @@ class SampleCache {
     bool owned = false;
     unsigned owner = 0;
     std::int32_t strength = 0;
-    int fresh = 0;  ///< samples of it in fresh_
+    int fresh = 0;         ///< samples of it in fresh_
+    bool disposed = false;  ///< forgotten once nothing of it is left in fresh_
   };
   struct Fresh {
     dds::SampleBlock* block = nullptr;  ///< nullptr once given out or overwritten
@@ -84,6 +89,7 @@ class SampleCache {
   };
 
   Instance& instance(std::uint64_t id);
+  void forget_disposed();
   bool owns(Instance& instance, const StagedSample& sample);
   void drop_oldest_fresh(Instance& instance);
   bool too_old(Time received, Time now) const;
@@ -91,12 +97,14 @@ class SampleCache {
   QosProfile profile_;
   Duration max_age_;
   bool keyed_;
-  std::vector<Instance> instances_;
+  std::vector<Instance> instances_;                     ///< in order of first appearance
+  std::unordered_map<std::uint64_t, std::size_t> index_;  ///< of keyed topics: id -> place in instances_
+  std::size_t disposed_ = 0;                            ///< disposed instances that may be forgotten
   std::vector<Fresh> fresh_;  ///< those not yet given out, from next_fresh_ on
   std::size_t next_fresh_ = 0;
   std::size_t live_fresh_ = 0;  ///< blocks in fresh_
   bool queued_ = false;         ///< somebody takes; a port that only looks at the newest loses nothing
-  std::size_t newest_ = 0;  ///< index of the instance that got the newest sample
+  std::size_t newest_ = 0;  ///< place of the instance that got the newest sample
   PortCounters counters_;
 };
 

@@ -38,21 +38,26 @@ using bench_msgs::msg::Payload;
 struct HopRun {
   std::size_t bytes = 64;
   std::size_t count = 0;
+  Duration period = Duration::zero();  ///< between two messages; zero: as soon as the last has come back
   std::vector<std::int64_t> hops;
 } hop_run;
 
-/// Publishes the next message as soon as the last one has come back.
+/// Publishes one message a period, or the next as soon as the last has come back.
 class Sender final : public Component {
   Input<Payload> back_{this, "back", qos::state, &Sender::on_back, "Answers."};
   Output<Payload> out_{this, "out", qos::state, "Messages."};
-  std::uint32_t sequence_ = 0;
+  bool paced_ = hop_run.period > Duration::zero();
+  Timer tick_{this, paced_ ? hop_run.period : std::chrono::hours(1), &Sender::on_tick};
+  std::uint32_t number_ = 0;
 
-  void on_activate(Time) override { send(); }
-  void on_back(const Payload&, Time) { send(); }
+  void on_tick(Time) { send(); }
+  void on_back(const Payload&, Time) {
+    if (!paced_) send();
+  }
   void send() {
     auto message = out_.loan_uncleared();
     message->data.resize(hop_run.bytes);
-    message->number = ++sequence_;
+    message->number = ++number_;
     message->stamp = now_ns();
     out_.publish(std::move(message));
   }
@@ -105,12 +110,12 @@ runtime::ContainerSpec hop_spec(dds::DomainConfig domain, Network network) {
 }
 
 std::vector<std::int64_t> kervan_hops(std::size_t bytes, std::size_t count, const dds::DomainConfig& domain,
-                                      Network network = Network::sync,
+                                      Network network = Network::sync, Duration period = Duration::zero(),
                                       const std::function<void(runtime::Container&)>& before = {}) {
   ComponentRegistry registry({});
   registry.add(sender);
   registry.add(receiver);
-  hop_run = {bytes, count, {}};
+  hop_run = {bytes, count, period, {}};
   hop_run.hops.reserve(count);
   runtime::Container container(hop_spec(domain, network), registry);
   if (before) before(container);
@@ -123,7 +128,7 @@ dds::DomainConfig no_network(std::uint32_t id) { return {.id = id, .network = fa
 std::vector<std::int64_t> kervan_cross_thread_hops(std::size_t count) {
   ComponentRegistry registry({});
   registry.add(listener);
-  hop_run = {64, count, {}};
+  hop_run = {64, count, Duration::zero(), {}};
   hop_run.hops.reserve(count);
   runtime::ContainerSpec spec;
   spec.domain = no_network(221);
@@ -274,8 +279,9 @@ std::vector<std::int64_t> hops_with_remote_reader(const char* program, std::size
     const auto& output = *container.find("sender")->outputs().front();
     while (output.writer().status().matched < 2) std::this_thread::sleep_for(1ms);
   };
+  // Paced, as real publishers are: sending back to back would measure how fast the network drains.
   auto hops = kervan_hops(bytes, count, {.id = 223, .network = true, .interface = "lo", .tag = tag}, network,
-                          wait_for_reader);
+                          bytes > 100000 ? 10ms : 1ms, wait_for_reader);
   close(pipe_ends[1]);
   waitpid(child, nullptr, 0);
   posix_spawn_file_actions_destroy(&actions);
@@ -304,7 +310,7 @@ void bench_same_thread(int rounds) {
   say("\n## One hop in one thread, p50, from before publish to the first line of the handler\n\n");
   say("| size | Kervan ns | raw C listener ns | ratio | target |\n|---|---|---|---|---|\n");
   for (const std::size_t bytes : {std::size_t{64}, std::size_t{16} << 10, std::size_t{1} << 20}) {
-    const std::size_t count = rounds == 1 ? 500 : bytes > 100000 ? 2000 : 50000;
+    const std::size_t count = bytes > 100000 ? 2000 : 50000;
     std::vector<std::int64_t> ours, theirs;
     std::vector<double> ratios;
     const auto before = dds::data_path_statistics();
@@ -324,7 +330,7 @@ void bench_remote_reader(const char* program) {
   say("| size | network | Kervan us | target us |\n|---|---|---|---|\n");
   for (const std::size_t bytes : {std::size_t{64}, std::size_t{1} << 20}) {
     for (const Network network : {Network::sync, Network::async}) {
-      const auto hops = hops_with_remote_reader(program, bytes, bytes > 100000 ? 500 : 5000, network);
+      const auto hops = hops_with_remote_reader(program, bytes, bytes > 100000 ? 200 : 2000, network);
       const bool async = network == Network::async;
       say("| %zu B | %s | %.1f | %s |\n", bytes, async ? "async" : "sync", static_cast<double>(median(hops)) * 1e-3,
           !async ? "-" : bytes == 64 ? "5" : "100");
@@ -381,10 +387,21 @@ std::string cpu_name() {
 int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "--chain-start") == 0) return chain_start(10);
   if (argc == 3 && std::strcmp(argv[1], "--remote-reader") == 0) return remote_reader(argv[2]);
+  if (argc == 4 && std::strcmp(argv[1], "--hop") == 0) {  // for a profiler
+    const auto hops = kervan_hops(std::strtoul(argv[2], nullptr, 10), std::strtoul(argv[3], nullptr, 10), no_network(221));
+    std::printf("%lld ns\n", static_cast<long long>(median(hops)));
+    return 0;
+  }
+  if (argc == 2 && std::strcmp(argv[1], "--cross") == 0) {
+    const auto hops = kervan_cross_thread_hops(3000);
+    std::printf("%lld ns\n", static_cast<long long>(median(hops)));
+    std::printf("%lld ns queue\n", static_cast<long long>(median(bench::queue_hops(3000))));
+    return 0;
+  }
   const bool smoke = argc == 2 && std::strcmp(argv[1], "--smoke") == 0;
   if (argc == 3 && std::strcmp(argv[1], "--report") == 0) report = std::fopen(argv[2], "w");
   if (argc > 1 && !smoke && !report) {
-    std::fprintf(stderr, "usage: %s [--smoke | --report FILE]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s [--smoke | --report FILE | --hop BYTES COUNT]\n", argv[0]);
     return 2;
   }
   say("# Data path on %s, %u cores\n", cpu_name().c_str(), std::thread::hardware_concurrency());

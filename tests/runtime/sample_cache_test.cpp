@@ -112,6 +112,15 @@ TEST_F(SampleCacheTest, TheStrongestWriterOwnsAnInstanceUntilItGoesOrMissesItsDe
   EXPECT_EQ(take_all(cache, 121ms), (std::vector{5, 6}));
 }
 
+TEST_F(SampleCacheTest, InstancesStandInTheOrderOfTheirFirstSample) {
+  SampleCache cache({.depth = 1}, kervan::forever, true);
+  cache.stage({sample(3, 0s, 9), sample(1, 0s, 2), sample(2, 0s, 5), sample(4, 1s, 9)});
+  std::vector<int> numbers;
+  for (const auto* block : cache.instances(at(1s))) numbers.push_back(number(block));
+  EXPECT_EQ(numbers, (std::vector{4, 1, 2}));
+  EXPECT_EQ(number(cache.latest(at(1s))), 4);
+}
+
 TEST_F(SampleCacheTest, EquallyStrongWritersAreToldApartByTheirPlaceInTheComposition) {
   SampleCache cache({.depth = 10, .ownership = kervan::Ownership::exclusive}, kervan::forever, false);
   cache.stage({sample(1, 0ms, 1, 3, 5), sample(2, 0ms, 1, 2, 5), sample(3, 0ms, 1, 3, 5)});
