@@ -46,9 +46,13 @@ CdrBytes* cdr_of(const SampleBlock* const_block) {
   const std::uint32_t size = cdr_size(block);
   const std::size_t body_size = size - cdr::encapsulation_size;
   const std::size_t padding = cdr::padding_after(body_size);
-  auto* made = static_cast<CdrBytes*>(std::malloc(sizeof(CdrBytes) + size + padding));
-  if (!made) throw std::bad_alloc();
-  made->size = size;
+  CdrBytes* made = block->spare.exchange(nullptr, std::memory_order_acq_rel);
+  if (!made || made->capacity < size + padding) {
+    std::free(made);
+    made = static_cast<CdrBytes*>(std::malloc(sizeof(CdrBytes) + size + padding));
+    if (!made) throw std::bad_alloc();
+    made->capacity = size + padding;
+  }
   std::byte* bytes = made->data();
   std::memcpy(bytes, cdr::encapsulation(body_size).data(), cdr::encapsulation_size);
   std::memset(bytes + size, 0, padding);
@@ -247,6 +251,7 @@ SampleBlock* BlockPool::allocate() {
 }
 
 void BlockPool::destroy(SampleBlock* block) noexcept {
+  std::free(block->spare.load(std::memory_order_relaxed));
   support_.destroy(block->value);
   block->~SampleBlock();
   ::operator delete(block, static_cast<std::align_val_t>(std::max(support_.alignment, alignof(std::max_align_t))));
@@ -270,8 +275,12 @@ SampleBlock* BlockPool::get(const ddsi_sertype* type, ddsi_serdata_kind kind) {
 }
 
 void BlockPool::put(SampleBlock* block) noexcept {
-  if (CdrBytes* cdr = block->cdr.exchange(nullptr, std::memory_order_acq_rel)) std::free(cdr);
-  block->pooled_bytes = sizeof(SampleBlock) + support_.size + support_.heap_bytes(block->value);
+  // Fresh memory costs more than the bytes written to it (page faults), so that of the CDR is kept with the block.
+  if (CdrBytes* cdr = block->cdr.exchange(nullptr, std::memory_order_acq_rel))
+    std::free(block->spare.exchange(cdr, std::memory_order_acq_rel));
+  const CdrBytes* spare = block->spare.load(std::memory_order_relaxed);
+  block->pooled_bytes =
+      sizeof(SampleBlock) + support_.size + support_.heap_bytes(block->value) + (spare ? spare->capacity : 0);
   lock();
   --outstanding_;
   const bool keep =

@@ -27,12 +27,13 @@ struct KeyedBlock : ddsi_serdata {
 
 /// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4.
 struct CdrBytes {
-  std::uint32_t size;         ///< with the header, without the padding
+  std::size_t capacity;  ///< bytes behind this struct
   std::byte* data() { return reinterpret_cast<std::byte*>(this + 1); }
 };
 
 struct SampleBlock : KeyedBlock {
-  std::atomic<CdrBytes*> cdr{nullptr};
+  std::atomic<CdrBytes*> cdr{nullptr};    ///< nullptr until a remote reader needs it
+  std::atomic<CdrBytes*> spare{nullptr};  ///< memory for it, kept from an earlier use of the block
   SampleBlock* next_free = nullptr;
   std::size_t pooled_bytes = 0;  ///< what the block accounts for while it lies in the pool
   Time received{};               ///< on this process' clock; the publishing time for a local sample

@@ -96,6 +96,7 @@ void Container::request_finish(unsigned component, std::string why) {
   // The first component in the composition's order gives the reason, whichever thread came first.
   if (!finish_ || component < finish_->first) finish_.emplace(component, std::move(why));
   finish_requested_ = true;
+  finish_wanted_.notify_one();
 }
 
 std::optional<std::string> Container::finish_reason() {
@@ -237,9 +238,6 @@ RunReport Container::run_lockstep(const RunControl& control) {
 
 RunReport Container::run_wall(const RunControl& control) {
   RunReport report;
-  std::atomic<bool> over{false};
-  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
-  Time next_progress = started_;
   dispatchers_.clear();
   dispatchers_.push_back(std::make_unique<Dispatcher>());
   for (const auto& instance : instances_) {
@@ -249,41 +247,36 @@ RunReport Container::run_wall(const RunControl& control) {
     dispatcher->enqueue(*instance);  // whatever came during activation
   }
   std::vector<std::thread> threads;
-  const auto serve = [&over](Dispatcher& dispatcher) {
-    dispatcher.run([&over] { return over.load(std::memory_order_relaxed); });
-  };
-  for (std::size_t i = 1; i < dispatchers_.size(); ++i) threads.emplace_back(serve, std::ref(*dispatchers_[i]));
-  for (unsigned i = 1; i < spec_.threads; ++i) threads.emplace_back(serve, std::ref(*dispatchers_.front()));
-  // The calling thread works too, and asks after each component whether the run has ended.
-  dispatchers_.front()->run([&] {
-    if (finish_requested_.load(std::memory_order_relaxed)) {
-      report.end = RunEnd::finished;
-      report.reason = finish_reason().value_or("finished");
-      return true;
-    }
-    if (control.stop && control.stop->load(std::memory_order_relaxed)) {
-      report.end = RunEnd::interrupted;
-      report.reason = "interrupted";
-      return true;
-    }
-    if (end == Time::max() && !control.progress) return false;
-    const Time now = dds::wall_now();
-    if (now >= end) {
-      report.end = RunEnd::time_limit;
-      report.reason = "the time asked for has passed";
-      return true;
-    }
-    if (control.progress && now >= next_progress) {
-      control.progress(now);
-      next_progress = now + kProgressPeriod;
-    }
-    return false;
-  });
-  over = true;
+  for (unsigned i = 0; i < spec_.threads; ++i) threads.emplace_back(&Dispatcher::run, dispatchers_.front().get());
+  for (std::size_t i = 1; i < dispatchers_.size(); ++i) threads.emplace_back(&Dispatcher::run, dispatchers_[i].get());
+
+  report = supervise(control);
+  for (const auto& dispatcher : dispatchers_) dispatcher->stop();
   for (std::thread& thread : threads) thread.join();
   for (const auto& instance : instances_) instance->dispatcher = nullptr;
   instant_ = {dds::wall_now(), 0};
   return report;
+}
+
+/// Waits for the end of a run under the wall clock, in the thread that called run(), and shows its progress.
+RunReport Container::supervise(const RunControl& control) {
+  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
+  std::unique_lock lock(finish_mutex_);
+  for (;;) {
+    if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
+    // A signal handler sets the flag and can do no more, so it has to be looked at now and then.
+    if (control.stop && control.stop->load(std::memory_order_relaxed))
+      return {.end = RunEnd::interrupted, .reason = "interrupted"};
+    const Time now = dds::wall_now();
+    if (now >= end) return {.end = RunEnd::time_limit, .reason = "the time asked for has passed"};
+    if (control.progress) {
+      lock.unlock();
+      control.progress(now);
+      lock.lock();
+      if (finish_) continue;
+    }
+    finish_wanted_.wait_for(lock, std::min<Duration>(kProgressPeriod, end - now));
+  }
 }
 
 void Container::end() {

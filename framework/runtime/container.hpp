@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -35,7 +36,7 @@ std::string_view to_text(RunEnd end);
 
 struct RunReport {
   RunEnd end = RunEnd::finished;
-  std::string reason;         ///< one sentence
+  std::string reason = {};    ///< one sentence
   Time ended_at{};            ///< on the composition's clock
   std::uint64_t cycles = 0;   ///< delta cycles run
 };
@@ -84,6 +85,7 @@ class Container {
  private:
   RunReport run_lockstep(const RunControl& control);
   RunReport run_wall(const RunControl& control);
+  RunReport supervise(const RunControl& control);
   bool run_one_time(RunReport& report);
   bool run_cycle_of_inputs();
   void for_each_parallel(const std::vector<ComponentInstance*>& instances,
@@ -108,6 +110,7 @@ class Container {
   std::vector<ComponentInstance*> batch_;  ///< scratch of a cycle
   std::atomic<bool> finish_requested_{false};
   std::mutex finish_mutex_;
+  std::condition_variable finish_wanted_;
   std::optional<std::pair<unsigned, std::string>> finish_;  ///< component index and reason
 };
 

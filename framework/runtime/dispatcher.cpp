@@ -16,8 +16,6 @@ constexpr int kQueued = 1;   // waits for a thread
 constexpr int kRunning = 2;  // a thread is in it
 constexpr int kAgain = 3;    // a thread is in it, and more has come since
 
-constexpr Duration kLongestSleep = std::chrono::milliseconds(50);
-
 /// The dispatcher whose run() this thread is in: it looks at the queue again anyway and needs no waking.
 thread_local const Dispatcher* current = nullptr;
 
@@ -75,10 +73,17 @@ void Dispatcher::release_due(Time now) {
   }
 }
 
-ComponentInstance* Dispatcher::next(const std::function<bool()>& ended) {
+/// The component whose turn it is; nullptr after stop().
+ComponentInstance* Dispatcher::next() {
   std::unique_lock lock(mutex_);
   for (;;) {
-    if (!wakes_.empty()) release_due(dds::wall_now());
+    if (stopped_) return nullptr;
+    Duration sleep = forever;
+    if (!wakes_.empty()) {
+      const Time now = dds::wall_now();
+      release_due(now);
+      if (!wakes_.empty()) sleep = wakes_.front().due - now;
+    }
     if (first_) {
       ComponentInstance* instance = first_;
       first_ = instance->next_queued;
@@ -86,18 +91,13 @@ ComponentInstance* Dispatcher::next(const std::function<bool()>& ended) {
       if (first_ && waiting_ > 0) work_.notify_one();
       return instance;
     }
-    Duration sleep = kLongestSleep;
-    if (!wakes_.empty()) sleep = std::min(sleep, wakes_.front().due - dds::wall_now());
-    if (sleep > Duration::zero()) {
-      ++waiting_;
+    ++waiting_;
+    // Arming a timer is not free, so the sleep has an end only if something is due.
+    if (sleep == forever)
+      work_.wait(lock);
+    else
       work_.wait_for(lock, sleep);
-      --waiting_;
-    }
-    if (!first_) {
-      lock.unlock();
-      if (ended()) return nullptr;
-      lock.lock();
-    }
+    --waiting_;
   }
 }
 
@@ -116,14 +116,18 @@ void Dispatcher::run_one(ComponentInstance& instance) {
   push(instance);
 }
 
-void Dispatcher::run(const std::function<bool()>& ended) {
+void Dispatcher::run() {
   const Dispatcher* outer = std::exchange(current, this);
-  while (!ended()) {
-    ComponentInstance* instance = next(ended);
-    if (!instance) break;
-    run_one(*instance);
-  }
+  while (ComponentInstance* instance = next()) run_one(*instance);
   current = outer;
+}
+
+void Dispatcher::stop() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopped_ = true;
+  }
+  work_.notify_all();
 }
 
 }  // namespace kervan::runtime

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <condition_variable>
-#include <functional>
 #include <mutex>
 #include <thread>
 #include <vector>
@@ -24,9 +23,10 @@ class Dispatcher {
   /// Wakes the component at its next_due().
   void schedule(ComponentInstance& instance);
 
-  /// Runs components in the calling thread until `ended` says so; it is asked at least every 50 ms, and after each
-  /// component. Several threads may be in here; each component runs in one of them at a time.
-  void run(const std::function<bool()>& ended);
+  /// Runs components in the calling thread until stop(). Several threads may be in here; each component runs in one of
+  /// them at a time.
+  void run();
+  void stop();
 
  private:
   struct Wake {
@@ -34,7 +34,7 @@ class Dispatcher {
     ComponentInstance* instance;
   };
 
-  ComponentInstance* next(const std::function<bool()>& ended);
+  ComponentInstance* next();
   void push(ComponentInstance& instance) noexcept;
   void release_due(Time now);
   void run_one(ComponentInstance& instance);
@@ -45,6 +45,7 @@ class Dispatcher {
   ComponentInstance* last_ = nullptr;
   std::vector<Wake> wakes_;  ///< a heap, earliest on top; entries whose time was changed since are skipped
   int waiting_ = 0;
+  bool stopped_ = false;
 };
 
 }  // namespace kervan::runtime

@@ -1,5 +1,6 @@
 /// The data path beside what it is measured against, in one run: same-thread and cross-thread hops, a chain of ten
 /// components, its start and its memory. Prints ratios; asserts only what does not depend on the machine's speed.
+#include <sched.h>
 #include <spawn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -245,8 +246,24 @@ Start measure_start(const char* program) {
   return {static_cast<double>(arrived - begin) * 1e-6, static_cast<double>(resident) / 1024.0};
 }
 
+/// Keeps the process, threads made later included, on one core, so that two processes do not take turns on the same.
+void run_on_core(unsigned core) {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  CPU_SET(core % std::thread::hardware_concurrency(), &cores);
+  sched_setaffinity(0, sizeof cores, &cores);
+}
+
+void run_on_every_core() {
+  cpu_set_t cores;
+  CPU_ZERO(&cores);
+  for (unsigned core = 0; core < std::thread::hardware_concurrency(); ++core) CPU_SET(core, &cores);
+  sched_setaffinity(0, sizeof cores, &cores);
+}
+
 /// A reader in another process, until its standard input closes.
 int remote_reader(const char* tag) {
+  run_on_core(1);
   class Ignore final : public dds::SampleSink {
     void on_sample(const dds::Arrival&) noexcept override {}
     void on_writer_gone(std::uint64_t) noexcept override {}
@@ -263,6 +280,7 @@ int remote_reader(const char* tag) {
 
 std::vector<std::int64_t> hops_with_remote_reader(const char* program, std::size_t bytes, std::size_t count,
                                                   Network network) {
+  run_on_core(0);
   const std::string tag = "bench-" + std::to_string(getpid());
   int pipe_ends[2];
   if (pipe(pipe_ends) != 0) std::exit(1);
@@ -281,10 +299,11 @@ std::vector<std::int64_t> hops_with_remote_reader(const char* program, std::size
   };
   // Paced, as real publishers are: sending back to back would measure how fast the network drains.
   auto hops = kervan_hops(bytes, count, {.id = 223, .network = true, .interface = "lo", .tag = tag}, network,
-                          bytes > 100000 ? 10ms : 1ms, wait_for_reader);
+                          bytes > 100000 ? 10ms : Duration(400us), wait_for_reader);
   close(pipe_ends[1]);
   waitpid(child, nullptr, 0);
   posix_spawn_file_actions_destroy(&actions);
+  run_on_every_core();
   return hops;
 }
 
@@ -387,8 +406,9 @@ std::string cpu_name() {
 int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "--chain-start") == 0) return chain_start(10);
   if (argc == 3 && std::strcmp(argv[1], "--remote-reader") == 0) return remote_reader(argv[2]);
-  if (argc == 4 && std::strcmp(argv[1], "--hop") == 0) {  // for a profiler
-    const auto hops = kervan_hops(std::strtoul(argv[2], nullptr, 10), std::strtoul(argv[3], nullptr, 10), no_network(221));
+  if (argc == 5 && std::strcmp(argv[1], "--hop") == 0) {  // for a profiler
+    const auto hops = kervan_hops(std::strtoul(argv[2], nullptr, 10), std::strtoul(argv[3], nullptr, 10), no_network(221),
+                                  Network::sync, std::chrono::microseconds(std::atol(argv[4])));
     std::printf("%lld ns\n", static_cast<long long>(median(hops)));
     return 0;
   }
@@ -401,7 +421,7 @@ int main(int argc, char** argv) {
   const bool smoke = argc == 2 && std::strcmp(argv[1], "--smoke") == 0;
   if (argc == 3 && std::strcmp(argv[1], "--report") == 0) report = std::fopen(argv[2], "w");
   if (argc > 1 && !smoke && !report) {
-    std::fprintf(stderr, "usage: %s [--smoke | --report FILE | --hop BYTES COUNT]\n", argv[0]);
+    std::fprintf(stderr, "usage: %s [--smoke | --report FILE | --hop BYTES COUNT PERIOD_US | --cross]\n", argv[0]);
     return 2;
   }
   say("# Data path on %s, %u cores\n", cpu_name().c_str(), std::thread::hardware_concurrency());
