@@ -11,6 +11,10 @@ namespace kervan {
 
 namespace fs = std::filesystem;
 
+namespace {
+const char kOfThisLibrary = 0;
+}
+
 ComponentRegistry::ComponentRegistry(std::vector<fs::path> folders) : folders_(std::move(folders)) {}
 
 std::vector<fs::path> ComponentRegistry::default_folders() {
@@ -23,6 +27,13 @@ std::vector<fs::path> ComponentRegistry::default_folders() {
   std::error_code ignored;
   const fs::path program = fs::read_symlink("/proc/self/exe", ignored);
   if (!program.empty()) folders.push_back(program.parent_path().parent_path() / "lib" / "kervan" / "components");
+  // Beside this library: there an installation has them, wherever the program that links it lies.
+  Dl_info self;
+  if (dladdr(&kOfThisLibrary, &self) != 0 && self.dli_fname) {
+    const fs::path library = fs::canonical(self.dli_fname, ignored);
+    const fs::path folder = library.parent_path() / "kervan" / "components";
+    if (!ignored && std::find(folders.begin(), folders.end(), folder) == folders.end()) folders.push_back(folder);
+  }
   return folders;
 }
 

@@ -16,7 +16,8 @@ class ComponentRegistry {
   /// Looks for modules in `folders`, first match wins.
   explicit ComponentRegistry(std::vector<std::filesystem::path> folders);
 
-  /// The folders of KERVAN_COMPONENT_PATH (separated by ':'), then lib/kervan/components beside the running program.
+  /// The folders of KERVAN_COMPONENT_PATH (separated by ':'), then lib/kervan/components beside the running program and
+  /// kervan/components beside this library.
   static std::vector<std::filesystem::path> default_folders();
 
   /// Adds a type of this program; it hides a module of the same name.

@@ -40,8 +40,8 @@ void use_pattern(spdlog::sinks::sink& sink, const std::string& pattern) {
 class RosoutSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit RosoutSink(dds::Domain& domain)
-      : writer_(domain, "/rosout", type_support<rcl_interfaces::msg::Log>(), profile(),
-                dds::CyclonePart::whole_profile, 0, 0) {}
+      : writer_(domain, "/rosout", type_support<rcl_interfaces::msg::Log>(), profile(), dds::CyclonePart::whole_profile,
+                0, 0) {}
 
  private:
   static QosProfile profile() {
@@ -80,6 +80,7 @@ Time LogTime::current() { return log_time; }
 LogSinks::LogSinks(bool console, const std::filesystem::path& folder, dds::Domain* rosout) {
   if (console) {
     auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
+    sink->set_level(spdlog::level::warn);
     // A progress line may stand on the terminal; a log line takes its place.
     use_pattern(*sink, std::string(isatty(STDERR_FILENO) ? "\r\033[K" : "") + "%^%l%$ [%* %n] %v");
     sinks_.push_back(std::move(sink));
@@ -97,6 +98,7 @@ LogSinks::~LogSinks() = default;
 std::shared_ptr<spdlog::logger> LogSinks::make(const std::string& name, const std::string& level) const {
   auto logger = std::make_shared<spdlog::logger>(name, sinks_.begin(), sinks_.end());
   logger->set_level(spdlog::level::from_str(level));
+  logger->flush_on(spdlog::level::warn);  // what went wrong is in the file even if the process does not live on
   return logger;
 }
 

@@ -1,5 +1,6 @@
-/// Where components log: the console, the run's folder, and /rosout as rcl_interfaces/msg/Log. Lines carry the
-/// composition's time, so that the log of a lockstep run can be compared with another's.
+/// Where components log: the run's folder and /rosout (as rcl_interfaces/msg/Log) get every line of the component's
+/// level and above, the console only warnings and above. Lines carry the composition's time, so that the log of a
+/// lockstep run can be compared with another's.
 #pragma once
 
 #include <spdlog/common.h>

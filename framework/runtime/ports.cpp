@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "framework/dds/hash.hpp"
 #include "framework/runtime/container.hpp"
@@ -11,8 +12,13 @@ namespace kervan::runtime {
 
 namespace {
 
-/// How many samples may wait in the inbox of a component that does not come to look, beyond what its history keeps.
-constexpr std::size_t kInboxSlack = 64;
+/// How many samples may wait for a component that does not come to look. Only then does an inbox fill up, and without a
+/// bound it would take all memory. Under lockstep nothing may depend on how fast anybody is, so everything is kept.
+std::size_t inbox_limit(ClockMode clock, const QosProfile& profile, bool keyed) {
+  if (clock == ClockMode::lockstep) return std::numeric_limits<std::size_t>::max();
+  const auto depth = static_cast<std::size_t>(profile.depth);
+  return keyed || depth == 0 ? SampleCache::kMostKept : depth + 64;
+}
 
 dds::CyclonePart part_of(ClockMode clock) {
   return clock == ClockMode::wall ? dds::CyclonePart::whole_profile : dds::CyclonePart::carrier;
@@ -26,7 +32,8 @@ InputPort::InputPort(InputBase& input, const PortBinding& binding, ComponentInst
       binding_(binding),
       owner_(owner),
       clock_(clock),
-      cache_(binding.profile, input.info().qos.max_age(), input.type().keyed) {
+      inbox_limit_(inbox_limit(clock, binding.profile, input.type().keyed)),
+      cache_(binding.profile, input.info().qos.max_age(), input.type().keyed, static_cast<bool>(input.deliver_)) {
   reader_ = std::make_unique<dds::Reader>(domain, binding.topic, input.type(), binding.profile, part_of(clock), *this);
   input.port_ = this;
 }
@@ -34,7 +41,7 @@ InputPort::InputPort(InputBase& input, const PortBinding& binding, ComponentInst
 InputPort::~InputPort() {
   input_.port_ = nullptr;
   reader_.reset();  // no sample arrives from here on
-  for (const dds::Arrival& arrival : inbox_) dds::release(arrival.block);
+  for (std::size_t i = inbox_first_; i < inbox_.size(); ++i) dds::release(inbox_[i].block);
   for (dds::SampleBlock* block : given_) dds::release(block);
 }
 
@@ -42,13 +49,14 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
   dds::retain(arrival.block);
   dds::SampleBlock* overflow = nullptr;
   lock();
-  // Only a component that does not run lets its inbox fill up; what it would drop anyway when it runs again goes now.
-  // Under lockstep nothing may depend on how fast anybody is, so everything is kept.
-  const auto depth = static_cast<std::size_t>(binding_.profile.depth);
-  if (clock_ == ClockMode::wall && depth > 0 && !input_.type().keyed && inbox_.size() >= depth + kInboxSlack) {
-    overflow = inbox_.front().block;
-    inbox_.erase(inbox_.begin());
+  if (inbox_.size() - inbox_first_ >= inbox_limit_) {
+    overflow = inbox_[inbox_first_++].block;
     ++overflowed_;
+    // The gap in front is closed once it is as long as what waits behind it.
+    if (inbox_first_ > inbox_limit_) {
+      inbox_.erase(inbox_.begin(), inbox_.begin() + static_cast<std::ptrdiff_t>(inbox_first_));
+      inbox_first_ = 0;
+    }
   }
   inbox_.push_back(arrival);
   unlock();
@@ -74,12 +82,14 @@ PortCounters InputPort::counters() const {
 void InputPort::stage(Time now) {
   lock();
   arrived_.swap(inbox_);
+  const std::size_t first = std::exchange(inbox_first_, 0);
   const std::vector<std::uint64_t> gone = std::exchange(gone_, {});
   unlock();
   const bool ordered = clock_ == ClockMode::lockstep;
   const bool needs_writers = ordered || binding_.profile.ownership == Ownership::exclusive;
   staged_.clear();
-  for (const dds::Arrival& arrival : arrived_) {
+  for (std::size_t i = first; i < arrived_.size(); ++i) {
+    const dds::Arrival& arrival = arrived_[i];
     const unsigned writer = needs_writers ? owner_.container().writer_index(arrival.writer) : 0;
     const Time received = ordered ? now : dds::received_at(arrival.block);
     staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});

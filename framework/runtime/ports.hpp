@@ -65,9 +65,11 @@ class InputPort final : public dds::SampleSink {
   PortBinding binding_;
   ComponentInstance& owner_;
   ClockMode clock_;
+  std::size_t inbox_limit_;
   SampleCache cache_;
   mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
-  std::vector<dds::Arrival> inbox_;        ///< under spin_; its blocks are retained
+  std::vector<dds::Arrival> inbox_;        ///< under spin_, from inbox_first_ on; its blocks are retained
+  std::size_t inbox_first_ = 0;            ///< under spin_: what stood before it was dropped
   std::vector<std::uint64_t> gone_;        ///< under spin_: writers that left
   std::uint64_t overflowed_ = 0;           ///< under spin_: dropped because the component did not run
   std::vector<dds::Arrival> arrived_;      ///< scratch of stage(), swapped with inbox_

@@ -11,8 +11,12 @@ namespace {
 Time later(Time t, Duration d) { return d == forever ? Time::max() : t + d; }
 }  // namespace
 
-SampleCache::SampleCache(const QosProfile& profile, Duration max_age, bool keyed)
-    : profile_(profile), max_age_(max_age), keyed_(keyed) {}
+SampleCache::SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued)
+    : profile_(profile),
+      max_age_(max_age),
+      keyed_(keyed),
+      most_kept_(profile.depth > 0 ? static_cast<std::size_t>(profile.depth) : kMostKept),
+      queued_(queued) {}
 
 SampleCache::~SampleCache() {
   for (std::size_t i = next_fresh_; i < fresh_.size(); ++i)
@@ -98,7 +102,7 @@ void SampleCache::stage(const std::vector<StagedSample>& samples) {
       target.newest = sample.block;
     }
     newest_ = static_cast<std::size_t>(&target - instances_.data());
-    if (profile_.depth > 0 && target.fresh >= profile_.depth) drop_oldest_fresh(target);
+    if (static_cast<std::size_t>(target.fresh) >= most_kept_) drop_oldest_fresh(target);
     if (target.disposed && !queued_) {
       dds::release(sample.block);
       continue;

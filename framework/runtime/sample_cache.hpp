@@ -37,7 +37,11 @@ struct PortCounters {
 
 class SampleCache {
  public:
-  SampleCache(const QosProfile& profile, Duration max_age, bool keyed);
+  /// What "keep all" keeps of an instance that nobody takes samples of: a bound is needed, or memory runs out.
+  static constexpr std::size_t kMostKept = 10'000;
+
+  /// `queued`: each sample is waited for; otherwise that is assumed from the first take() on.
+  SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued = false);
   SampleCache(const SampleCache&) = delete;
   SampleCache& operator=(const SampleCache&) = delete;
   ~SampleCache();
@@ -97,13 +101,14 @@ class SampleCache {
   QosProfile profile_;
   Duration max_age_;
   bool keyed_;
+  std::size_t most_kept_;  ///< of each instance
   std::vector<Instance> instances_;                     ///< in order of first appearance
   std::unordered_map<std::uint64_t, std::size_t> index_;  ///< of keyed topics: id -> place in instances_
   std::size_t disposed_ = 0;                            ///< disposed instances that may be forgotten
   std::vector<Fresh> fresh_;  ///< those not yet given out, from next_fresh_ on
   std::size_t next_fresh_ = 0;
   std::size_t live_fresh_ = 0;  ///< blocks in fresh_
-  bool queued_ = false;         ///< somebody takes; a port that only looks at the newest loses nothing
+  bool queued_;                 ///< somebody takes; a port that only looks at the newest loses nothing
   std::size_t newest_ = 0;  ///< place of the instance that got the newest sample
   PortCounters counters_;
 };

@@ -110,6 +110,48 @@ TEST(WallClockOwnThread, AComponentThatBlocksRunsInAThreadOfItsOwn) {
   EXPECT_NE(Blocking::thread, Boss::thread);
 }
 
+/// Publishes far more than its reader's inbox holds, from within one handler.
+class Flood final : public kervan::Component {
+  kervan::Output<Time> out_{this, "out", kervan::qos::event, "Many."};
+  void on_activate(kervan::Time) override {
+    for (int i = 0; i < 5000; ++i) {
+      auto message = out_.loan();
+      message->sec = i;
+      out_.publish(std::move(message));
+    }
+  }
+};
+
+class Drain final : public kervan::Component {
+  kervan::Input<Time> in_{this, "in", kervan::qos::event, &Drain::on_message, "Many."};
+  void on_message(const Time& message, kervan::Time) {
+    seen.push_back(message.sec);
+    if (message.sec == 4999) finish("the last one came");
+  }
+
+ public:
+  static inline std::vector<int> seen;
+};
+
+TEST(WallClockOverload, AComponentThatCannotKeepUpGetsTheNewestAndTheRestIsCounted) {
+  kervan::ComponentRegistry registry({});
+  registry.add(kervan::test::define<Flood>("test/flood"));
+  registry.add(kervan::test::define<Drain>("test/drain"));
+  kervan::runtime::ContainerSpec spec;
+  spec.domain = {.id = 210, .network = false};
+  spec.log_to_console = false;
+  const kervan::QosProfile event = *kervan::builtin_profile("event");
+  spec.components.push_back({.name = "flood", .type = "test/flood", .ports = {{"out", "/flood", event}}});
+  spec.components.push_back({.name = "drain", .type = "test/drain", .ports = {{"in", "/flood", event}}});
+  kervan::runtime::Container container(spec, registry);
+  EXPECT_EQ(container.run({.limit = 60s}).end, kervan::runtime::RunEnd::finished);
+  ASSERT_EQ(Drain::seen.size(), 100u);  // the depth of `event`
+  EXPECT_EQ(Drain::seen.front(), 4900);
+  EXPECT_EQ(Drain::seen.back(), 4999);
+  const auto counters = container.find("drain")->inputs().front()->counters();
+  EXPECT_EQ(counters.handled + counters.overwritten + counters.refused, 5000u);
+}
+
 TEST(WallClockStop, TheStopFlagEndsARunInGoodOrder) {
   kervan::ComponentRegistry registry({});
   const auto boss = kervan::test::define<Boss>("test/boss");
