@@ -12,7 +12,11 @@ install(FILES
   ${CMAKE_CURRENT_BINARY_DIR}/kervan-config-version.cmake
   ${PROJECT_SOURCE_DIR}/cmake/KervanComponent.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/kervan)
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/deploy/compositions/ DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan/compositions
+
+# The data that the program looks up in share/kervan.
+install(DIRECTORY
+  ${PROJECT_SOURCE_DIR}/deploy/compositions
+  ${PROJECT_SOURCE_DIR}/sim/worlds
+  ${PROJECT_SOURCE_DIR}/sim/robots
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan
   FILES_MATCHING PATTERN "*.yaml")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/sim/worlds ${PROJECT_SOURCE_DIR}/sim/robots
-  DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan FILES_MATCHING PATTERN "*.yaml")

@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -45,7 +47,7 @@ struct RobotParams {
   template <class Visitor>
   void describe(Visitor& v) {
     v(model, "model", {.help = "Robot model file (robots/p3dx.yaml).", .required = true});
-    v(start, "start", {.help = "Pose of base_link in map at the start."});
+    v(start, "start", {.min = -1e6, .max = 1e6, .help = "Pose of base_link in map at the start."});
     v(drift, "drift",
       {.min = 0.0, .max = 0.5, .help = "Bound of the odometry's errors per metre and per radian, drawn once per run."});
     v(odometry_period, "odometry_period", {.min = 0.001, .max = 10.0, .help = "Time between two odometry readings."});
@@ -171,6 +173,7 @@ class RobotPorts {
     if (robot.sonar().stamp == simulated && !robot.sonar().ranges.empty()) publish_sonar(robot, now);
   }
 
+  std::uint64_t contacts() const { return contacts_; }  ///< published so far
   bool last_refused() const { return last_refused_; }
   const std::string& command_name() const { return cmd_vel_.name(); }
 
@@ -260,8 +263,10 @@ class SimulatorComponent final : public Component {
   std::optional<Time> start_;  // of the simulated time: the first tick
 
   Simulation simulation() const {
+    const auto seed = static_cast<std::uint64_t>(params_.seed);
     // Without a map only the declarations are wanted (kervan describe).
-    const auto world = std::make_shared<const World>(params_.map.path.empty() ? World(Obstacles{}) : load_world(params_.map.path));
+    if (params_.map.path.empty()) return Simulation(std::make_shared<const World>(Obstacles{}), {}, seed);
+    const auto world = std::make_shared<const World>(load_world(params_.map.path));
     std::vector<RobotSetup> setups;
     for (const auto& [name, robot] : params_.robots) {
       setups.push_back(robot.setup(name));
@@ -269,7 +274,7 @@ class SimulatorComponent final : public Component {
         throw ParameterError("robots." + name + ".start", "the robot would stand in an obstacle of " + world->name());
     }
     try {
-      return Simulation(world, std::move(setups), static_cast<std::uint64_t>(params_.seed));
+      return Simulation(world, std::move(setups), seed);
     } catch (const std::invalid_argument& error) {
       throw ParameterError("robots", error.what());
     }
@@ -277,7 +282,7 @@ class SimulatorComponent final : public Component {
 
   std::deque<RobotPorts> ports() {
     std::deque<RobotPorts> ports;
-    for (const Robot& robot : simulation_.robots()) ports.emplace_back(this, robot.name());
+    for (const auto& [name, robot] : params_.robots) ports.emplace_back(this, name);
     return ports;
   }
 
@@ -302,8 +307,14 @@ class SimulatorComponent final : public Component {
     clock->clock = geometry::to_message(now);
     clock_.publish(std::move(clock));
     auto frames = tf_.loan();
-    for (std::size_t i = 0; i < ports_.size(); ++i)
-      ports_[i].publish(simulation_.robots()[i], simulation_.now(), now, *frames, params_.map_to_odom);
+    for (std::size_t i = 0; i < ports_.size(); ++i) {
+      const Robot& robot = simulation_.robots()[i];
+      const std::uint64_t contacts = ports_[i].contacts();
+      ports_[i].publish(robot, simulation_.now(), now, *frames, params_.map_to_odom);
+      if (ports_[i].contacts() != contacts)
+        log().info("{} touches something at ({:.2f}, {:.2f}), contact {}", robot.name(),
+                   robot.body().last_contact().point.x(), robot.body().last_contact().point.y(), ports_[i].contacts());
+    }
     if (!frames->transforms.empty()) tf_.publish(std::move(frames));
   }
 

@@ -63,6 +63,7 @@ class PotentialFieldComponent final : public Component {
   Timer tick_{this, params_.period, &PotentialFieldComponent::on_tick};
   std::vector<SonarEcho> echoes_;
   std::optional<geometry::Vector2> obstacle_;  // nearest, in the frame of the odometry
+  bool located_ = false;                       // the last sonar round came while the robot knew where it was
   bool arrived_ = false;
   Time activated_{};
 
@@ -78,13 +79,15 @@ class PotentialFieldComponent final : public Component {
           {{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
            static_cast<double>(reading.range)});
     obstacle_ = nearest_echo(echoes_, static_cast<double>(sonar.max_range));
-    if (const auto* odometry = odom_.latest(); obstacle_ && odometry)
-      obstacle_ = geometry::pose_of(odometry->pose.pose) * *obstacle_;
+    const auto* odometry = odom_.latest();
+    located_ = odometry != nullptr;
+    if (located_ && obstacle_) obstacle_ = geometry::pose_of(odometry->pose.pose) * *obstacle_;
   }
 
   void on_tick(Time now) {
     for (const std::string& why : {waypoint_.missing(), odom_.missing(), sonar_.missing()})
       if (!why.empty()) return stand(now, why);
+    if (!located_) return stand(now, "sonar: heard while the robot did not know where it was");
     const auto& odometry = *odom_.latest();
     const geometry::Pose2 robot = geometry::pose_of(odometry.pose.pose);
     const geometry::Vector2 goal = geometry::position_of(waypoint_.latest()->pose);
@@ -102,7 +105,8 @@ class PotentialFieldComponent final : public Component {
 
   void stand(Time now, std::string why) {
     command(now, {});
-    if (now > activated_) report_degraded(std::move(why));  // At activation nobody can have published yet.
+    // At the first tick nobody can have published yet.
+    if (now - activated_ >= params_.period) report_degraded(std::move(why));
   }
 
   void command(Time now, const geometry::Twist2& twist) {

@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <vector>
 
 #include "components/control/route_follower.hpp"
@@ -51,8 +53,13 @@ class RouteFollowerComponent final : public Component {
 
   void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
     const std::size_t before = follower_.index();
+    const bool arrived = follower_.arrived();
     follower_.advance(geometry::position_of(odometry.pose.pose));
-    if (follower_.index() != before) publish_waypoint(now);
+    if (follower_.index() != before) {
+      log().info("waypoint {} of {} passed", follower_.index(), follower_.size());
+      publish_waypoint(now);
+    }
+    if (follower_.arrived() && !arrived) log().info("arrived at the last waypoint, by odometry");
   }
 
   void publish_waypoint(Time now) {

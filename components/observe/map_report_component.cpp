@@ -138,7 +138,14 @@ class MapReportComponent final : public Component {
 
   std::deque<Subject> subjects() {
     std::deque<Subject> robots;
-    for (const auto& name : params_.robots) robots.emplace_back(this, name);
+    for (std::size_t i = 0; i < params_.robots.size(); ++i) {
+      const std::string& name = params_.robots[i];
+      if (std::find(params_.robots.begin(), params_.robots.end(), name) - params_.robots.begin() !=
+          static_cast<std::ptrdiff_t>(i))
+        throw ParameterError("robots[" + std::to_string(i) + "]",
+                             "'" + name + "' is there already; name each robot once");
+      robots.emplace_back(this, name);
+    }
     return robots;
   }
 

@@ -1,3 +1,5 @@
+#include <spdlog/spdlog.h>
+
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -28,7 +30,12 @@ struct RobotGoals {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(at, "at", {.unit = "m", .help = "Goals in the map, to be reached in this order.", .required = true});
+    v(at, "at",
+      {.unit = "m",
+       .min = -1e6,
+       .max = 1e6,
+       .help = "Goals in the map, to be reached in this order.",
+       .required = true});
   }
 };
 
@@ -76,6 +83,11 @@ class Contender {
   }
 
   const MissionScore& score() const { return *score_; }
+  /// "1 of 2, (16.00, 7.80)"
+  std::string goal_text() const {
+    return std::to_string(score_->figures().goal + 1) + " of " + std::to_string(params_.goals.size()) + ", (" +
+           decimal(score_->goal().x(), 2) + ", " + decimal(score_->goal().y(), 2) + ")";
+  }
   bool reached() const { return score_->figures().outcome == observe::MissionOutcome::reached; }
   const std::string& name() const { return name_; }
   std::string missing() const { return truth_.missing(); }
@@ -121,10 +133,12 @@ class MissionComponent final : public Component {
   Time activated_{};
 
   std::deque<Contender> contenders() {
-    if (params_.goals.empty() && !describing()) throw ParameterError("goals", "no robot has a goal");
+    if (params_.goals.empty() && !describing())
+      throw ParameterError("goals", "no robot has a goal; write e.g. {r1: {at: [[1 m, 2 m]]}}");
     std::deque<Contender> robots;
     for (const auto& [name, goals] : params_.goals) {
-      if (goals.at.empty()) throw ParameterError("goals." + name + ".at", "there is no goal in it");
+      if (goals.at.empty())
+        throw ParameterError("goals." + name + ".at", "there is no goal in it; write e.g. [[1 m, 2 m]]");
       MissionParams mission = params_.mission;
       mission.goals = goals.at;
       robots.emplace_back(this, name, mission);
@@ -134,7 +148,23 @@ class MissionComponent final : public Component {
 
   void on_activate(Time now) override {
     activated_ = now;
-    for (auto& robot : robots_) robot.start(now);
+    for (auto& robot : robots_) {
+      robot.start(now);
+      log().info("{} is sent to goal {}", robot.name(), robot.goal_text());
+    }
+  }
+
+  /// Takes what is new of a robot and says in the log what came of its goal.
+  void look(Contender& robot, Time now) {
+    const std::string goal = robot.goal_text();
+    const bool over = robot.score().ended();
+    robot.look(now);
+    const MissionFigures& figures = robot.score().figures();
+    const std::string sent = robot.goal_text();
+    if (sent != goal) log().info("{} has reached goal {} and is sent to goal {}", robot.name(), goal, sent);
+    if (over || !robot.score().ended()) return;
+    log().info("{} {} goal {}: error {} m after {} s", robot.name(), robot.reached() ? "has reached" : "did not reach",
+               goal, decimal(figures.error, 3), decimal(figures.time, 2));
   }
 
   void on_tick(Time now) {
@@ -142,14 +172,14 @@ class MissionComponent final : public Component {
     bool ended = true, reached = true;
     std::string missing;
     for (auto& robot : robots_) {
-      robot.look(now);
+      look(robot, now);
       ended = ended && robot.score().ended();
       reached = reached && robot.reached();
       if (missing.empty()) missing = robot.missing();
     }
     if (missing.empty())
       report_active();
-    else if (now > activated_)  // At activation nobody can have published yet.
+    else if (now - activated_ >= params_.period)  // At the first tick nobody can have published yet.
       report_degraded(missing);
     if (!ended) return;
     publish_result(now, reached ? MissionOutcome::MISSION_SUCCESS : MissionOutcome::MISSION_FAILED, reason());

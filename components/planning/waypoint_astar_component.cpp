@@ -1,8 +1,11 @@
+#include <spdlog/spdlog.h>
+
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 
-#include "framework/geometry/messages.hpp"
 #include "components/planning/waypoint_astar.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
@@ -10,6 +13,10 @@
 
 namespace kervan::planning {
 namespace {
+
+using namespace std::chrono_literals;
+
+constexpr Duration patience = 100ms;  ///< with an odometry that is missing
 
 struct WaypointAstarParams {
   std::vector<geometry::Vector2> nodes;
@@ -19,7 +26,8 @@ struct WaypointAstarParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(nodes, "nodes", {.unit = "m", .help = "Waypoints in the map, numbered from 0.", .required = true});
+    v(nodes, "nodes",
+      {.unit = "m", .min = -1e6, .max = 1e6, .help = "Waypoints in the map, numbered from 0.", .required = true});
     v(edges, "edges", {.help = "Pairs of waypoints joined by a free straight line.", .required = true});
     v(costs, "costs", {.unit = "m", .min = 0.0, .help = "One for each edge, at least its length; none: the lengths."});
     v(reach, "reach",
@@ -33,13 +41,15 @@ WaypointGraph graph_of(const WaypointAstarParams& params) {
                                       std::to_string(params.edges.size()) + " edges; allowed: one for each, or none");
   WaypointGraph graph(params.nodes);
   for (std::size_t i = 0; i < params.edges.size(); ++i) {
-    // A negative number becomes one far beyond the last node and is refused as such.
+    const std::string edge = "edges[" + std::to_string(i) + "]";
+    if (const auto least = std::min(params.edges[i].first, params.edges[i].second); least < 0)
+      throw ParameterError(edge, "there is no node " + std::to_string(least) + "; nodes are counted from 0");
     const auto a = static_cast<std::size_t>(params.edges[i].first),
                b = static_cast<std::size_t>(params.edges[i].second);
     try {
       params.costs.empty() ? graph.connect(a, b) : graph.connect(a, b, params.costs[i]);
     } catch (const std::invalid_argument& error) {
-      throw ParameterError("edges[" + std::to_string(i) + "]", error.what());
+      throw ParameterError(edge, error.what());
     }
   }
   return graph;
@@ -55,6 +65,21 @@ const char* why_not(RouteStatus status) {
   return "";
 }
 
+/// "0-1-2-4-5"
+std::string numbers(const std::vector<std::size_t>& nodes) {
+  std::string text;
+  for (const std::size_t node : nodes) text += (text.empty() ? "" : "-") + std::to_string(node);
+  return text;
+}
+
+/// m, along the path
+double length(const nav_msgs::msg::Path& path) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < path.poses.size(); ++i)
+    sum += (geometry::position_of(path.poses[i].pose) - geometry::position_of(path.poses[i - 1].pose)).norm();
+  return sum;
+}
+
 /// Plans once for every goal, from where the robot is then. A goal without a route gives an empty route and `degraded`.
 class WaypointAstarComponent final : public Component {
   WaypointAstarParams params_ = parameters<WaypointAstarParams>();
@@ -64,16 +89,21 @@ class WaypointAstarComponent final : public Component {
   Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor, &WaypointAstarComponent::on_odometry,
                                        "Where the robot is."};
   Output<nav_msgs::msg::Path> route_{this, "route", qos::latched, "Waypoints to the goal; empty: there is no route."};
+  Timer tick_{this, patience, &WaypointAstarComponent::on_tick};
   geometry_msgs::msg::PoseStamped wanted_;
+  Time wanted_since_{};
   bool pending_ = false;
 
   void on_goal(const geometry_msgs::msg::PoseStamped& goal, Time now) {
     wanted_ = goal;
+    wanted_since_ = now;
     pending_ = true;
-    if (const auto* odometry = odom_.latest())
-      plan(*odometry, now);
-    else
-      report_degraded(odom_.missing());
+    if (const auto* odometry = odom_.latest()) plan(*odometry, now);
+  }
+
+  /// A goal may come before the first odometry; only when that goes on is something wrong.
+  void on_tick(Time now) {
+    if (pending_ && now - wanted_since_ >= patience) report_degraded(odom_.missing());
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
@@ -97,10 +127,12 @@ class WaypointAstarComponent final : public Component {
     if (route.status == RouteStatus::found && (graph_.position(route.nodes.back()) - goal).norm() > 1e-3) add(goal);
     route_.publish(path);
 
-    if (route.status == RouteStatus::found)
+    if (route.status == RouteStatus::found) {
+      log().info("route to ({:.2f}, {:.2f}) over {}: {:.2f} m", goal.x(), goal.y(), numbers(route.nodes), length(path));
       report_active();
-    else
+    } else {
       report_degraded(why_not(route.status));
+    }
   }
 };
 

@@ -1,7 +1,7 @@
-#include <spdlog/logger.h>
+#include <spdlog/spdlog.h>
 
-#include "framework/geometry/messages.hpp"
 #include "components/safety/drive_guard.hpp"
+#include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
 
@@ -59,13 +59,21 @@ class DriveGuardComponent final : public Component {
     if (last_refused_)
       report_degraded("cmd_vel_raw: refused a command that is not finite");
     else if (guard_.state() == DriveState::following)
-      report_active();
-    else if (now > activated_)  // At activation nobody can have published yet.
+      follow();
+    else if (now - activated_ >= params_.guard.period)  // At the first tick nobody can have published yet.
       report_degraded(guard_.state() == DriveState::waiting ? "cmd_vel_raw: nothing received yet"
                                                             : "cmd_vel_raw: no fresh command, braking");
   }
 
-  void on_deactivate(Time now) override { publish(now, {}); }
+  void follow() {
+    if (state() == ComponentState::degraded) log().info("fresh commands, driving");
+    report_active();
+  }
+
+  void on_deactivate(Time now) override {
+    publish(now, {});
+    log().info("the last command is zero");
+  }
 
   void on_shutdown(Time) override {
     if (guard_.refused() > 0) log().warn("refused {} commands that were not finite", guard_.refused());

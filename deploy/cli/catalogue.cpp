@@ -1,5 +1,7 @@
 #include "deploy/cli/catalogue.hpp"
 
+#include <cstdlib>
+#include <sstream>
 #include <stdexcept>
 
 namespace kervan::cli {
@@ -11,6 +13,16 @@ const ComponentClass& class_of(ComponentRegistry& registry, const std::string& t
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> component_folders() {
+  if (const char* path = std::getenv("KERVAN_COMPONENT_PATH")) {
+    std::istringstream parts(path);
+    for (std::string folder; std::getline(parts, folder, ':');)
+      if (!folder.empty() && !std::filesystem::is_directory(folder))
+        throw ConfigError({"KERVAN_COMPONENT_PATH", 0, 0}, "there is no folder '" + folder + "'");
+  }
+  return ComponentRegistry::default_folders();
+}
 
 std::vector<ParameterInfo> InstalledComponents::parameters(const std::string& type) {
   return parameters_of(class_of(registry_, type));

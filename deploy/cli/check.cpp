@@ -2,7 +2,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "deploy/cli/catalogue.hpp"
 #include "deploy/cli/prepare.hpp"
+#include "deploy/cli/print_json.hpp"
 #include "deploy/cli/table.hpp"
 #include "deploy/cli/verbs.hpp"
 
@@ -51,7 +53,13 @@ ordered_json report(const ResolvedComposition& composition) {
   object["result"] = !composition.usable() ? "errors" : composition.findings.empty() ? "good" : "warnings";
   object["composition"] = composition.source.name;
   object["file"] = composition.source.file;
-  for (const char* list : {"components", "topics", "pairs", "findings"}) object[list] = ordered_json::array();
+  for (const char* list : {"arguments", "components", "topics", "pairs", "findings"})
+    object[list] = ordered_json::array();
+  for (const auto& argument : composition.source.arguments)
+    object["arguments"].push_back({{"name", argument.info.name},
+                                   {"kind", to_text(argument.info.kind)},
+                                   {"value", argument.value->shown()},
+                                   {"help", argument.info.help}});
   for (const auto& component : composition.components)
     object["components"].push_back(
         {{"name", component.name}, {"type", component.manifest.type}, {"container", component.container}});
@@ -93,7 +101,17 @@ void print_topic(const ResolvedComposition& composition, const ResolvedTopic& to
   print_table(std::cout, rows, "    ");
 }
 
+void print_arguments(const ResolvedComposition& composition) {
+  if (composition.source.arguments.empty()) return;
+  std::vector<std::vector<std::string>> rows;
+  for (const auto& argument : composition.source.arguments)
+    rows.push_back({"--arg " + argument.info.name + "=" + argument.value->shown(), argument.info.help});
+  print_table(std::cout, rows);
+  std::cout << '\n';
+}
+
 void print_matrix(const ResolvedComposition& composition) {
+  if (composition.pairs.empty()) return;
   std::vector<std::vector<std::string>> rows = {{"topic", "type", "writer", "reader", "profile", "verdict"}};
   for (const auto& pair : composition.pairs)
     rows.push_back({pair.topic, pair.type, pair.writer, pair.reader, pair.profile, pair.verdict});
@@ -103,15 +121,16 @@ void print_matrix(const ResolvedComposition& composition) {
 }  // namespace
 
 int check(const CheckRequest& request) {
-  ComponentRegistry registry(ComponentRegistry::default_folders());
+  ComponentRegistry registry(component_folders());
   const ResolvedComposition composition = prepare(request, registry);
   const ResolvedTopic* topic = request.explain.empty() ? nullptr : &find_topic(composition, request.explain);
   print_findings(composition);
   if (request.json) {
-    std::cout << (topic ? topic_json(composition, *topic) : report(composition)).dump() << std::endl;
+    print_json(topic ? topic_json(composition, *topic) : report(composition));
   } else if (topic) {
     print_topic(composition, *topic);
   } else {
+    print_arguments(composition);
     print_matrix(composition);
     std::cout << composition.source.name << ": " << counted(composition.components.size(), "component") << ", "
               << counted(composition.topics.size(), "topic") << ", " << counted(composition.pairs.size(), "pair")

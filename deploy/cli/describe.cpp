@@ -51,7 +51,72 @@ std::string requirements(const PortInfo& port) {
 
 const char* to_text(PortDirection direction) { return direction == PortDirection::input ? "input" : "output"; }
 
-void print(const Manifest& manifest) {
+/// What kervan describe says of one type.
+struct Description {
+  Manifest manifest;
+  std::vector<std::string> per_name;  ///< parameters that name things which have ports of their own
+  std::string why_no_ports;           ///< the ports are unknown without some parameters; else empty
+};
+
+/// The made-up name for which such ports are shown.
+constexpr const char* example_name = "r1";
+
+/// A value that a component can be described with; a list has one item. Nobody opens the file.
+Value example_of(const ParameterInfo& info) {
+  switch (info.kind) {
+    case ParameterKind::path:
+    case ParameterKind::text: return std::string(example_name);
+    case ParameterKind::texts: return ValueList{std::string(example_name)};
+    case ParameterKind::numbers: return ValueList{0.0};
+    case ParameterKind::points: return ValueList{Value(ValueList{0.0, 0.0})};
+    case ParameterKind::pairs: return ValueList{Value(ValueList{std::int64_t{0}, std::int64_t{1}})};
+    case ParameterKind::records: {
+      ValueMap record;
+      for (const ParameterInfo& member : info.members)
+        if (member.required) record[member.name] = example_of(member);
+      return ValueMap{{example_name, record}};
+    }
+    default: return info.default_value;
+  }
+}
+
+/// Some components have a set of ports for each name in a parameter: described without one, the ports would be missing.
+void add_example_ports(InstalledComponents& components, Description& description) {
+  ValueMap values;
+  const std::vector<ParameterInfo> parameters = description.manifest.parameters;
+  for (const ParameterInfo& info : parameters) {
+    if (info.kind != ParameterKind::records && info.kind != ParameterKind::texts) continue;
+    ValueMap with_example = values;
+    with_example[info.name] = example_of(info);
+    try {
+      Manifest manifest = components.manifest(description.manifest.type, with_example);
+      if (manifest.ports.size() == description.manifest.ports.size()) continue;
+      description.manifest = std::move(manifest);
+      description.per_name.push_back(info.name);
+      values = std::move(with_example);
+    } catch (const std::exception&) {  // the example does not suit it: its ports stay as they are without
+    }
+  }
+}
+
+Description description_of(const std::string& type, ComponentRegistry& registry) {
+  InstalledComponents components(registry);
+  Description description;
+  try {
+    description.manifest = components.manifest(type, {});
+    add_example_ports(components, description);
+  } catch (const std::exception& error) {
+    // Some components cannot exist without certain parameters, and their ports depend on them.
+    description.manifest.type = type;
+    description.manifest.help = registry.find(type)->help;
+    description.manifest.parameters = components.parameters(type);
+    description.why_no_ports = error.what();
+  }
+  return description;
+}
+
+void print(const Description& description) {
+  const Manifest& manifest = description.manifest;
   std::cout << manifest.type << "  " << manifest.help << '\n';
   std::vector<std::vector<std::string>> rows = {{"parameter", "kind", "unit", "default", "allowed", ""}};
   add_parameters(manifest.parameters, "", rows);
@@ -66,6 +131,51 @@ void print(const Manifest& manifest) {
     std::cout << '\n';
     print_table(std::cout, rows, "  ");
   }
+  for (const std::string& parameter : description.per_name)
+    std::cout << "\n  The ports " << example_name << "/… are there once for each name in " << parameter << ".\n";
+}
+
+/// Text in a cell of a Markdown table.
+std::string cell(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '<')
+      escaped += "&lt;";
+    else
+      escaped += c == '|' || c == '*' ? std::string{'\\', c} : std::string{c};
+  }
+  return escaped;
+}
+
+std::string code(const std::string& text) { return text.empty() ? "" : "`" + text + "`"; }
+
+void print_rows(const std::vector<std::vector<std::string>>& rows) {
+  for (const auto& row : rows) {
+    std::cout << '|';
+    for (const std::string& text : row) std::cout << (text.empty() ? " |" : " " + text + " |");
+    std::cout << '\n';
+  }
+}
+
+/// The section of a component's page that stands between its two markers.
+void print_markdown(const Description& description) {
+  for (const std::string& parameter : description.per_name)
+    std::cout << "The ports `" << example_name << "/…` are there once for each name in `" << parameter << "`.\n\n";
+  std::vector<std::vector<std::string>> rows = {{"port", "direction", "type", "quality of service", "help"},
+                                                {"---", "---", "---", "---", "---"}};
+  for (const PortInfo& port : description.manifest.ports)
+    rows.push_back({code(port.name), to_text(port.direction), code(port.type), requirements(port), cell(port.help)});
+  if (rows.size() > 2) print_rows(rows);
+
+  std::vector<std::vector<std::string>> parameters;
+  add_parameters(description.manifest.parameters, "", parameters);
+  if (parameters.empty()) return;
+  if (rows.size() > 2) std::cout << '\n';
+  rows = {{"parameter", "kind", "unit", "default", "allowed", "help"}, {"---", "---", "---", "---", "---", "---"}};
+  for (const auto& row : parameters)
+    rows.push_back(
+        {code(row[0]), cell(row[1]), row[2], row[3] == "required" ? row[3] : code(row[3]), cell(row[4]), cell(row[5])});
+  print_rows(rows);
 }
 
 ordered_json json_of(const Value& value) {
@@ -154,30 +264,25 @@ int list_all(ComponentRegistry& registry, bool json) {
 }  // namespace
 
 int describe(const DescribeRequest& request) {
-  ComponentRegistry registry(ComponentRegistry::default_folders());
+  ComponentRegistry registry(component_folders());
   if (request.component.empty()) return list_all(registry, request.json);
   const auto names = registry.names();
   if (std::find(names.begin(), names.end(), request.component) == names.end())
     throw ConfigError({}, "there is no component type '" + request.component + "'" +
                               config::hint(request.component, names, "there are"));
-  InstalledComponents components(registry);
-  Manifest manifest;
-  std::string why_no_ports;
-  try {
-    manifest = components.manifest(request.component, {});
-  } catch (const std::exception& error) {
-    // Some components cannot exist without certain parameters, and their ports depend on them.
-    manifest.type = request.component;
-    manifest.help = registry.find(request.component)->help;
-    manifest.parameters = components.parameters(request.component);
-    why_no_ports = error.what();
+  const Description description = description_of(request.component, registry);
+  if (request.json) {
+    ordered_json object = json_of(description.manifest);
+    if (!description.per_name.empty()) object["ports_for_each_name_in"] = description.per_name;
+    std::cout << object.dump() << std::endl;
+  } else if (request.markdown) {
+    print_markdown(description);
+  } else {
+    print(description);
   }
-  if (request.json)
-    std::cout << json_of(manifest).dump() << std::endl;
-  else
-    print(manifest);
-  if (!why_no_ports.empty())
-    std::cerr << "the ports depend on the parameters, see kervan check; without any: " << why_no_ports << '\n';
+  if (!description.why_no_ports.empty())
+    std::cerr << "the ports depend on the parameters, see kervan check; without any: " << description.why_no_ports
+              << '\n';
   return exit_good;
 }
 

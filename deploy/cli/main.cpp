@@ -1,8 +1,9 @@
 // The kervan program: parses the command line, calls the verb, and turns what goes wrong into one line on stderr.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iostream>
-#include <nlohmann/json.hpp>
 
+#include "deploy/cli/print_json.hpp"
 #include "deploy/cli/verbs.hpp"
 #include "framework/component/error.hpp"
 #include "framework/config/node.hpp"
@@ -13,6 +14,8 @@ namespace {
 
 const std::vector<std::string> verbs = {"run", "check", "describe"};
 
+const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
+
 /// The options that run and check share.
 void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
   verb.add_option("composition", request.composition, "name of a shipped composition, or a file")
@@ -20,78 +23,105 @@ void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
       ->required();
   verb.add_option("--arg", request.arguments, "value of one of the composition's arguments; may be repeated")
       ->type_name("NAME=VALUE")
+      ->check(not_empty)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb.add_option("--place", "where the components go; 'all' puts them into one container")
       ->type_name("all")
-      ->check(CLI::IsMember({"all"}))
+      ->check(CLI::Validator(
+          [](const std::string& text) { return text == "all" ? "" : "'" + text + "' is no placement; allowed: all"; },
+          ""))
       ->each([&request](const std::string&) { request.place_all = true; });
   verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
 }
 
 /// The reason on stderr, and with --json also as an object on stdout, so that a script never has to read prose.
-int refuse(const std::string& message, const Location& location, bool json) {
-  std::cerr << (location.file.empty() ? message : to_text(location) + ": " + message) << std::endl;
+int refuse(const ConfigError& error, bool json) {
+  std::cerr << error.what() << std::endl;
   if (json) {
-    nlohmann::ordered_json error = {{"message", message}};
-    if (!location.file.empty()) error["file"] = location.file;
-    if (location.line > 0) error["line"] = location.line;
-    if (location.column > 0) error["column"] = location.column;
-    std::cout << nlohmann::ordered_json{{"result", "error"}, {"error", error}}.dump() << std::endl;
+    const Location& location = error.location();
+    nlohmann::ordered_json object = {{"message", error.message()}};
+    if (!location.file.empty()) object["file"] = location.file;
+    if (location.line > 0) object["line"] = location.line;
+    if (location.column > 0) object["column"] = location.column;
+    cli::print_json({{"result", "error"}, {"error", object}});
   }
   return cli::exit_unusable;
+}
+
+/// CLI11's words where they are clear, ours where they are not.
+std::string reason(const CLI::ParseError& error, const CLI::App& app) {
+  if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return error.what();
+  if (app.get_subcommands().empty()) return "a command is missing: " + config::joined(verbs);
+  return "a composition is missing; name a shipped one, such as lab, or a file";
 }
 
 int dispatch(int argc, char** argv) {
   CLI::App app("Runs and checks compositions of robot components.", "kervan");
   app.require_subcommand(1);
+  app.set_version_flag("--version", "kervan " KERVAN_VERSION);
   app.footer(
       "Exit codes: 0 good, 1 found something or the mission failed, 2 wrong usage or configuration, 130 Ctrl-C.");
 
   cli::RunRequest run;
   CLI::App* run_verb = app.add_subcommand("run", "Run a composition until its mission ends.");
   add_composition(*run_verb, run);
-  run_verb->add_option("--for", run.time_limit, "stop after this time of the composition's clock")->type_name("TIME");
-  run_verb->add_option("--threads", run.threads, "threads of the dispatcher")->check(CLI::Range(1, 64))->type_name("N");
+  run_verb
+      ->add_option(
+          "--for", run.time_limit,
+          "stop after this time of the composition's clock, e.g. 10s; a mission that is not over then is aborted")
+      ->check(not_empty)
+      ->type_name("TIME");
+  run_verb->add_option("--threads", run.threads, "threads of the dispatcher, 1 to 64; else as the composition says")
+      ->check(not_empty)
+      ->type_name("N");
   run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
       ->capture_default_str()
+      ->check(not_empty)
       ->type_name("DIR");
 
   cli::CheckRequest check;
   CLI::App* check_verb = app.add_subcommand("check", "Check a composition without running it.");
   add_composition(*check_verb, check);
   check_verb->add_option("--explain", check.explain, "say which line gave each value of a topic's quality of service")
+      ->check(not_empty)
       ->type_name("TOPIC");
 
   cli::DescribeRequest describe;
   CLI::App* describe_verb =
       app.add_subcommand("describe", "List the component types, or the ports and parameters of one.");
-  describe_verb->add_option("component", describe.component, "a type, such as control/potential_field")
-      ->type_name("COMPONENT");
-  describe_verb->add_flag("--json", describe.json, "print one JSON object");
+  CLI::Option* component =
+      describe_verb->add_option("component", describe.component, "a type, such as control/potential_field")
+          ->type_name("COMPONENT");
+  CLI::Option* json_flag = describe_verb->add_flag("--json", describe.json, "print one JSON object");
+  describe_verb->add_flag("--markdown", describe.markdown, "print the tables for the component's page")
+      ->needs(component)
+      ->excludes(json_flag);
 
-  if (argc == 1) return refuse("a command is missing: " + config::joined(verbs) + "; see kervan --help", {}, false);
+  const std::vector<std::string> arguments(argv + 1, argv + argc);
+  const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
+  if (arguments.empty())
+    return refuse({{}, "a command is missing: " + config::joined(verbs) + "; see kervan --help"}, false);
+  const std::string verb = arguments[0].starts_with('-') ? "" : arguments[0];
   // CLI11 would call a misspelt verb an unexpected argument.
-  if (argc > 1 && argv[1][0] != '-' && std::find(verbs.begin(), verbs.end(), argv[1]) == verbs.end())
-    return refuse("there is no command '" + std::string(argv[1]) + "'" + config::hint(argv[1], verbs, "commands"), {},
-                  false);
+  if (!verb.empty() && std::find(verbs.begin(), verbs.end(), verb) == verbs.end())
+    return refuse({{}, "there is no command '" + verb + "'" + config::hint(verb, verbs, "commands")}, json);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);
-    const std::string verb = argc > 1 && argv[1][0] != '-' ? " " + std::string(argv[1]) : "";
-    return refuse("kervan" + verb + ": " + error.what() + "; see kervan" + verb + " --help", {}, false);
+    const std::string program = verb.empty() ? "kervan" : "kervan " + verb;
+    return refuse({{}, program + ": " + reason(error, app) + "; see " + program + " --help"}, json);
   }
 
-  const bool json = run.json || check.json || describe.json;
   try {
     if (*run_verb) return cli::run(run);
     if (*check_verb) return cli::check(check);
     return cli::describe(describe);
   } catch (const ConfigError& error) {
-    return refuse(error.message(), error.location(), json);
+    return refuse(error, json);
   } catch (const std::exception& error) {
-    return refuse(error.what(), {}, json);
+    return refuse({{}, error.what()}, json);
   }
 }
 

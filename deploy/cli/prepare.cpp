@@ -31,14 +31,20 @@ void print_findings(const composition::ResolvedComposition& composition) {
 }
 
 void require_usable(const composition::ResolvedComposition& composition) {
-  const composition::Finding* first = nullptr;
+  std::vector<const composition::Finding*> errors;
   for (const auto& finding : composition.findings) {
-    if (finding.severity == composition::Severity::error && first == nullptr)
-      first = &finding;
+    if (finding.severity == composition::Severity::error)
+      errors.push_back(&finding);
     else
       print(finding);
   }
-  if (first) throw ConfigError(first->location, first->message);
+  if (errors.empty()) return;
+  const std::size_t more = errors.size() - 1;
+  throw ConfigError(errors.front()->location,
+                    errors.front()->message +
+                        (more == 0 ? ""
+                                   : "; and " + std::to_string(more) + (more == 1 ? " more error" : " more errors") +
+                                         ", see kervan check " + composition.source.file));
 }
 
 }  // namespace kervan::cli

@@ -13,7 +13,8 @@ composition::ResolvedComposition prepare(const CompositionRequest& request, Comp
 /// One line on stderr for each finding: `file:line:column: message`, warnings marked as such.
 void print_findings(const composition::ResolvedComposition& composition);
 
-/// Prints the warnings; if there are errors, prints those after the first and throws the first as ConfigError.
+/// Prints the warnings. If there are errors it throws the first as ConfigError and says how many more kervan check
+/// shows.
 void require_usable(const composition::ResolvedComposition& composition);
 
 }  // namespace kervan::cli

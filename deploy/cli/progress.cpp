@@ -42,6 +42,12 @@ void Progress::show(Duration simulated) {
   std::fflush(stderr);
 }
 
+void Progress::finish(Duration simulated, double wall_s) {
+  if (!terminal_) return;
+  std::fputs((line(simulated, wall_s) + "\n").c_str(), stderr);
+  shown_ = false;
+}
+
 std::string Progress::line(Duration simulated, double wall) const {
   const std::string text = progress_text(simulated, expected_, wall);
   if (!terminal_) return text + "\n";

@@ -18,6 +18,9 @@ class Progress {
 
   void show(Duration simulated);
 
+  /// The run is over: on a terminal the bar stays as it was at the end, with the speed of the whole run.
+  void finish(Duration simulated, double wall_s);
+
  private:
   std::string line(Duration simulated, double wall) const;
 

@@ -1,6 +1,9 @@
 #include "deploy/cli/resources.hpp"
 
 #include <cstdlib>
+#include <string>
+
+#include "framework/component/error.hpp"
 
 namespace kervan::cli {
 namespace {
@@ -19,7 +22,11 @@ void add(const fs::path& folder, Resources& resources) {
 
 Resources find_resources() {
   Resources resources;
-  if (const char* share = std::getenv("KERVAN_SHARE"); share && *share) add(share, resources);
+  if (const char* share = std::getenv("KERVAN_SHARE"); share && *share) {
+    if (!fs::is_directory(share))
+      throw ConfigError({"KERVAN_SHARE", 0, 0}, "there is no folder '" + std::string(share) + "'");
+    add(share, resources);
+  }
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (!error) add(program.parent_path().parent_path() / "share" / "kervan", resources);

@@ -12,7 +12,7 @@ struct Resources {
 };
 
 /// The folder that KERVAN_SHARE names, then share/kervan beside the program's folder: installed files, or in a build
-/// tree links to the source tree.
+/// tree links to the source tree. Throws ConfigError if KERVAN_SHARE names no folder.
 Resources find_resources();
 
 }  // namespace kervan::cli

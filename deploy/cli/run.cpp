@@ -8,7 +8,9 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "deploy/cli/catalogue.hpp"
 #include "deploy/cli/prepare.hpp"
+#include "deploy/cli/print_json.hpp"
 #include "deploy/cli/progress.hpp"
 #include "deploy/cli/run_composition.hpp"
 #include "deploy/cli/verbs.hpp"
@@ -40,6 +42,15 @@ Duration time_limit(const RunRequest& request) {
   return limit;
 }
 
+/// 0 leaves it to the composition.
+unsigned threads(const RunRequest& request) {
+  if (request.threads.empty()) return 0;
+  const config::Node node = config::scalar(request.threads, "", "--threads " + request.threads);
+  const std::int64_t count = node.as_integer();
+  if (count < 1 || count > 64) node.fail(node.shown() + " is out of range; allowed: 1 .. 64");
+  return static_cast<unsigned>(count);
+}
+
 /// The mission's own time-out, which bounds the run.
 Duration mission_timeout(const ResolvedComposition& composition) {
   for (const auto& component : composition.components) {
@@ -60,6 +71,22 @@ void require_runnable(const ResolvedComposition& composition) {
                           std::to_string(source.containers.size()) + "; add --place all to run them as one");
   if (source.clock.mode == composition::ClockMode::sim)
     throw ConfigError(source.clock.location, "this version cannot run under clock sim; write lockstep or wall");
+}
+
+/// Takes back the folders of a run that did not come about: `folder` with what is in it, and the empty ones above it
+/// that were made for it.
+void take_back(const fs::path& folder, const std::vector<fs::path>& made) {
+  std::error_code ignored;
+  if (!folder.empty()) fs::remove_all(folder, ignored);
+  for (const fs::path& above : made) fs::remove(above, ignored);
+}
+
+/// The folders on the way to `folder`, itself included, that are not there yet; the deepest first.
+std::vector<fs::path> missing(fs::path folder) {
+  std::vector<fs::path> missing;
+  std::error_code ignored;
+  for (; !folder.empty() && !fs::exists(folder, ignored); folder = folder.parent_path()) missing.push_back(folder);
+  return missing;
 }
 
 /// runs/lab-20250131-142501; a number follows if two runs begin in the same second.
@@ -83,12 +110,9 @@ fs::path make_run_folder(const std::string& runs, const std::string& name) {
 
 const char* to_text(RunResult result) {
   switch (result) {
-    case RunResult::success:
-      return "success";
-    case RunResult::failed:
-      return "failed";
-    case RunResult::aborted:
-      return "aborted";
+    case RunResult::success: return "success";
+    case RunResult::failed: return "failed";
+    case RunResult::aborted: return "aborted";
   }
   return "";
 }
@@ -117,7 +141,7 @@ ordered_json summary(const RunOutcome& outcome) {
 
 void write_summary(const fs::path& folder, const ordered_json& object) {
   std::ofstream file(folder / "summary.json");
-  file << object.dump(2) << '\n';
+  file << object.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
   if (!file.flush()) std::cerr << (folder / "summary.json").string() << ": cannot be written\n";
 }
 
@@ -153,35 +177,36 @@ int exit_code(const RunOutcome& outcome) {
 
 int run(const RunRequest& request) {
   const Duration limit = time_limit(request);
-  ComponentRegistry registry(ComponentRegistry::default_folders());
+  const unsigned thread_count = threads(request);
+  ComponentRegistry registry(component_folders());
   const ResolvedComposition composition = prepare(request, registry);
   require_usable(composition);
   require_runnable(composition);
 
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-  const bool made_runs = !fs::exists(request.runs_folder);
+  const std::vector<fs::path> made = missing(request.runs_folder);
   RunOptions options;
-  options.run_folder = make_run_folder(request.runs_folder, composition.source.name);
   options.time_limit = limit;
-  options.threads = static_cast<unsigned>(request.threads);
+  options.threads = thread_count;
   options.stop = &stop_wanted;
 
   RunOutcome outcome;
   try {
+    options.run_folder = make_run_folder(request.runs_folder, composition.source.name);
     Progress progress(std::min(limit, mission_timeout(composition)), isatty(STDERR_FILENO) == 1);
     outcome = run_composition(composition, registry, options, [&](Duration simulated) { progress.show(simulated); });
+    progress.finish(from_seconds(outcome.simulated_s), outcome.wall_s);
   } catch (...) {
-    // A failing handler fails its component, not the run: this is a container that could not be made. Leave nothing behind.
-    std::error_code ignored;
-    fs::remove_all(options.run_folder, ignored);
-    if (made_runs) fs::remove(request.runs_folder, ignored);
+    // A failing handler fails its component, not the run: this is a container that could not be made. Leave nothing
+    // behind.
+    take_back(options.run_folder, made);
     throw;
   }
   const ordered_json object = summary(outcome);
   write_summary(options.run_folder, object);
   print_result(request.json ? std::cerr : std::cout, outcome, options.run_folder);
-  if (request.json) std::cout << object.dump() << std::endl;
+  if (request.json) print_json(object);
   return exit_code(outcome);
 }
 

@@ -27,15 +27,16 @@ class MissionListener final : public Component {
   static inline std::optional<MissionResult> heard;
 };
 
-const ComponentClass mission_listener{"kervan/mission_listener", "Hears how the mission ended.",
-                                      []() -> std::unique_ptr<Component> { return std::make_unique<MissionListener>(); }};
+const ComponentClass mission_listener{
+    "kervan/mission_listener", "Hears how the mission ended.",
+    []() -> std::unique_ptr<Component> { return std::make_unique<MissionListener>(); }};
 
 runtime::ContainerSpec container_spec(const composition::ResolvedComposition& composition, const RunOptions& options) {
   runtime::ContainerSpec spec;
   const composition::Container& container = composition.source.containers.front();
   spec.name = container.name;
   spec.clock = composition.source.clock.mode == composition::ClockMode::lockstep ? runtime::ClockMode::lockstep
-                                                                                  : runtime::ClockMode::wall;
+                                                                                 : runtime::ClockMode::wall;
   spec.threads = options.threads != 0 ? options.threads : static_cast<unsigned>(container.threads);
   spec.domain.id = static_cast<std::uint32_t>(composition.source.domain.id);
   // A lockstep run in one container needs no network, and nobody may disturb it.
@@ -86,8 +87,11 @@ void judge(RunOutcome& outcome, const runtime::RunReport& report, const std::str
       target.contacts = robot.contacts;
       if (std::isfinite(robot.min_clearance_m)) target.min_clearance_m = robot.min_clearance_m;
     }
-    outcome.reason = mission->reason;
-    outcome.result = mission->result == MissionOutcome::MISSION_SUCCESS ? RunResult::success
+    outcome.reason = mission->result != MissionOutcome::MISSION_ABORTED ? mission->reason
+                     : report.end == RunEnd::time_limit  ? "the time asked for was over before the mission was"
+                     : report.end == RunEnd::interrupted ? "interrupted before the mission was over"
+                                                         : mission->reason;
+    outcome.result = mission->result == MissionOutcome::MISSION_SUCCESS  ? RunResult::success
                      : mission->result == MissionOutcome::MISSION_FAILED ? RunResult::failed
                                                                          : RunResult::aborted;
   } else {

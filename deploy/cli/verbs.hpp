@@ -25,7 +25,7 @@ struct CompositionRequest {
 
 struct RunRequest : CompositionRequest {
   std::string time_limit;  ///< "60s"; empty for none
-  int threads = 0;         ///< 0: as the composition says
+  std::string threads;     ///< "4"; empty: as the composition says
   std::string runs_folder = "runs";
 };
 
@@ -36,6 +36,7 @@ struct CheckRequest : CompositionRequest {
 struct DescribeRequest {
   std::string component;  ///< empty for the list of all
   bool json = false;
+  bool markdown = false;  ///< the section of its page; needs a component
 };
 
 int run(const RunRequest& request);

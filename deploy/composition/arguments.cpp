@@ -1,6 +1,7 @@
 #include "deploy/composition/arguments.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "framework/config/values.hpp"
 
@@ -140,6 +141,7 @@ void give(Argument& argument, const Node& value) {
 }
 
 void give_from_command_line(std::vector<Argument>& arguments, const std::vector<std::string>& given) {
+  std::set<std::string> seen;
   for (const std::string& text : given) {
     const Location origin{"--arg " + text, 0, 0};
     const std::size_t equals = text.find('=');
@@ -150,6 +152,7 @@ void give_from_command_line(std::vector<Argument>& arguments, const std::vector<
       const auto names = names_of(arguments);
       throw ConfigError(origin, "the composition has no argument '" + name + "'" + config::hint(name, names, "it has"));
     }
+    if (!seen.insert(name).second) throw ConfigError(origin, "'" + name + "' is given twice; keep one of the two");
     const bool is_list = argument->info.kind == ParameterKind::pose || argument->info.kind == ParameterKind::points;
     give(*argument, is_list ? config::parse(value, origin.file) : config::scalar(value, "", origin.file));
   }

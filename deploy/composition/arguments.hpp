@@ -14,7 +14,8 @@ std::vector<Argument> declare_arguments(const config::Node& declarations);
 /// Gives an argument its value after checking it against its declaration.
 void give(Argument& argument, const config::Node& value);
 
-/// The values of `--arg name=value`. Throws ConfigError for an unknown name, a wrong value, or if one is left without.
+/// The values of `--arg name=value`. Throws ConfigError for an unknown name, one given twice, a wrong value, or if one
+/// is left without.
 void give_from_command_line(std::vector<Argument>& arguments, const std::vector<std::string>& given);
 
 /// The node with every `${name}` in its scalars replaced. A scalar that is nothing but `${name}` takes the whole value,

@@ -1,6 +1,7 @@
 #include "deploy/composition/load.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "deploy/composition/arguments.hpp"
@@ -201,6 +202,13 @@ std::vector<TopicEntry> read_topics(const Node& node) {
   return topics;
 }
 
+/// The name is part of the name of every run's folder.
+bool is_composition_name(const std::string& name) {
+  const auto is_plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  return !name.empty() && name.size() <= 64 && is_plain(name[0]) &&
+         std::all_of(name.begin(), name.end(), [&](char c) { return is_plain(c) || c == '_' || c == '-' || c == '.'; });
+}
+
 void check_version(const Node& root) {
   const Node& version = root.required("kervan");
   if (version.as_integer() != 1)
@@ -225,9 +233,10 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
   };
   const Node& name = root.required("name");
   composition.name = name.as_text();
-  if (composition.name.empty() || composition.name.find_first_of("/ ${}") != std::string::npos)
+  if (!is_composition_name(composition.name))
     name.fail(name.shown() +
-              " is not a name; it also names the folder of a run, so write it without spaces and slashes");
+              " is not a name for a composition; it also names the folder of a run, so use at most 64 letters, digits, "
+              "_, - and ., beginning with a letter or digit");
   if (const auto help = filled("help")) composition.help = help->as_text();
   if (const auto clock = filled("clock")) composition.clock = read_clock(*clock);
   if (const auto domain = filled("domain")) composition.domain = read_domain(*domain);
@@ -257,12 +266,9 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
 
 std::string_view to_text(ClockMode mode) {
   switch (mode) {
-    case ClockMode::wall:
-      return "wall";
-    case ClockMode::sim:
-      return "sim";
-    case ClockMode::lockstep:
-      return "lockstep";
+    case ClockMode::wall: return "wall";
+    case ClockMode::sim: return "sim";
+    case ClockMode::lockstep: return "lockstep";
   }
   return "";
 }
@@ -286,6 +292,8 @@ Composition load_text(const std::string& text, const std::string& shown_as, cons
 fs::path find_composition(const std::string& name_or_file, const std::vector<fs::path>& folders) {
   if (name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml") ||
       name_or_file.find('/') != std::string::npos) {
+    if (fs::is_directory(name_or_file))
+      throw ConfigError({name_or_file, 0, 0}, "this is a folder; name a file, or a composition: kervan run lab");
     if (!fs::is_regular_file(name_or_file)) throw ConfigError({name_or_file, 0, 0}, "there is no such file");
     return name_or_file;
   }
@@ -298,8 +306,11 @@ fs::path find_composition(const std::string& name_or_file, const std::vector<fs:
       if (entry.path().extension() == ".yaml") known.insert(entry.path().stem().string());
   }
   const std::vector<std::string> names(known.begin(), known.end());
-  throw ConfigError({},
-                    "there is no composition '" + name_or_file + "'" + config::hint(name_or_file, names, "there are"));
+  const std::string beside = name_or_file + ".yaml";
+  throw ConfigError(
+      {}, "there is no composition '" + name_or_file + "'" +
+              (!name_or_file.empty() && fs::is_regular_file(beside) ? "; a file is named with its ending: " + beside
+                                                                    : config::hint(name_or_file, names, "there are")));
 }
 
 std::string shown_path(const fs::path& path) {

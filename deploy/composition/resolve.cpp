@@ -30,6 +30,23 @@ std::string find_file(const Node& node, const fs::path& folder, const std::vecto
   node.fail("there is no file " + node.shown() + "; looked for " + list);
 }
 
+/// Where a port comes from. One whose name begins with a name in a parameter (`goals: {r1: …}` has the port r1/goal) is
+/// there because of that line; any other because of the component.
+Location location_of(const PortInfo& port, const ComponentEntry& entry, const std::vector<ParameterInfo>& parameters) {
+  const std::size_t slash = port.name.find('/');
+  if (slash == std::string::npos) return entry.location;
+  const std::string name = port.name.substr(0, slash);
+  for (const ParameterInfo& info : parameters) {
+    const Node* given = entry.params.optional(info.name);
+    if (given == nullptr) continue;
+    for (const Node& item : given->children) {
+      if (info.kind == ParameterKind::records && item.name == name) return item.key_location;
+      if (info.kind == ParameterKind::texts && item.text == name) return item.location;
+    }
+  }
+  return entry.location;
+}
+
 ResolvedComponent resolve_component(const ComponentEntry& entry, ComponentCatalogue& catalogue,
                                     const config::FindFile& find) {
   const std::string type = entry.type.as_text();
@@ -51,7 +68,8 @@ ResolvedComponent resolve_component(const ComponentEntry& entry, ComponentCatalo
   } catch (const std::exception& error) {
     entry.type.fail("'" + type + "' cannot be used: " + error.what());
   }
-  for (const PortInfo& port : component.manifest.ports) component.ports.push_back({port, "", entry.location});
+  for (const PortInfo& port : component.manifest.ports)
+    component.ports.push_back({port, "", location_of(port, entry, component.manifest.parameters)});
   return component;
 }
 

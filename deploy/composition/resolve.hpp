@@ -36,7 +36,7 @@ struct ResolveOptions {
 struct ResolvedPort {
   PortInfo info;
   std::string topic;  ///< absolute: "/r1/sonar"
-  Location location;  ///< of the remap, else of the component
+  Location location;  ///< of the remap, else of the name in a parameter that it belongs to, else of the component
 };
 
 struct ResolvedComponent {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <set>
+#include <tuple>
 
 #include "deploy/composition/glob.hpp"
 
@@ -56,7 +57,13 @@ class TopicNames {
     ResolvedPort& port = resolved_.components[c].ports[p];
     if (!port.topic.empty()) return port.topic;
     const Node* remap = entry(c).remap.optional(port.info.name);
-    if (remap == nullptr) return port.topic = in_scope(entry(c).scope, port.info.name);
+    if (remap == nullptr) {
+      port.topic = in_scope(entry(c).scope, port.info.name);
+      if (!is_topic(port.topic))
+        throw ConfigError(port.location, "'" + port.topic + "' is not a topic, so " + resolved_.port_name({c, p}) +
+                                             " cannot be one; use names of letters, digits and _, no digit first");
+      return port.topic;
+    }
     if (!visiting_.insert({c, p}).second) remap->fail("this remap leads back to itself");
     port.location = remap->location;
     port.topic = target(*remap, entry(c).scope);
@@ -248,8 +255,10 @@ class Judge {
     return "";
   }
 
-  /// What the reader requires of the topic's profile and does not get; empty if all is well.
+  /// What the reader requires of the topic's profile and does not get; empty if all is well. The quality of service of
+  /// another type's topic says nothing, and the type is reported already.
   std::pair<Severity, std::string> requirement(const ResolvedTopic& topic, PortReference reader) const {
+    if (info(reader).type != topic.type) return {Severity::warning, ""};
     const PortQos& wanted = info(reader).qos;
     const QosProfile& given = topic.qos.profile;
     const QosProfile declared = builtin_profile(wanted.profile()).value_or(QosProfile{});
@@ -287,6 +296,11 @@ void name_topics(ResolvedComposition& resolved) {
     for (std::size_t p = 0; p < resolved.components[c].ports.size(); ++p) names.topic(c, p);
 }
 
-void connect(ResolvedComposition& resolved, const ResolveOptions& options) { Judge(resolved, options).run(); }
+void connect(ResolvedComposition& resolved, const ResolveOptions& options) {
+  Judge(resolved, options).run();
+  std::stable_sort(resolved.findings.begin(), resolved.findings.end(), [](const Finding& a, const Finding& b) {
+    return std::tie(a.location.line, a.location.column) < std::tie(b.location.line, b.location.column);
+  });
+}
 
 }  // namespace kervan::composition

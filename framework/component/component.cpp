@@ -19,6 +19,12 @@ PortInfo port_info(std::string name, PortDirection direction, const TypeSupport&
 
 }  // namespace
 
+const TypeSupport& detail::require_layout(const TypeSupport& type, std::uint64_t compiled) {
+  if (type.layout_hash == compiled) return type;
+  throw std::runtime_error(std::string("it was built with another layout of ") + type.name +
+                           " than the library of that package which is loaded; build both from the same IDL");
+}
+
 std::string_view to_text(ComponentState state) {
   switch (state) {
     case ComponentState::configured: return "configured";

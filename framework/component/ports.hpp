@@ -6,6 +6,7 @@
 ///   Timer tick_{this, params_.period, &Planner::on_tick};
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 #include <type_traits>
@@ -23,6 +24,17 @@ namespace runtime {
 class InputPort;
 class OutputPort;
 }  // namespace runtime
+
+namespace detail {
+const TypeSupport& require_layout(const TypeSupport& type, std::uint64_t compiled);
+}
+
+/// The TypeSupport of T out of its package's library. Throws std::runtime_error if that was built with another layout of
+/// T than the calling code: a process has one library of a name, whichever module brought it along.
+template <class T>
+const TypeSupport& shared_type_support() {
+  return detail::require_layout(type_support<T>(), compiled_layout<T>);
+}
 
 /// What every input is, whatever its message type; see Input.
 class InputBase {
@@ -60,19 +72,19 @@ class InputBase {
 };
 
 /// A port that reads one topic. With a handler, each new sample is handed to it, oldest first; without, the component
-/// looks with latest(), take() or instances() when it runs. Pointers stay valid until the handler returns; keep a
-/// Sample to hold on to one.
+/// looks with latest(), take() or instances() when it runs. A pointer is valid until the handler returns; keep a Sample
+/// to hold on to one.
 template <class T>
 class Input : public InputBase {
  public:
   Input(Component* owner, std::string name, PortQos qos, std::string help)
-      : InputBase(owner, std::move(name), type_support<T>(), qos, nullptr, std::move(help)) {}
+      : InputBase(owner, std::move(name), shared_type_support<T>(), qos, nullptr, std::move(help)) {}
 
   /// `handler` is a member function of the owner: void (const T&, Time) sees the samples that carry data,
   /// void (const Sample<T>&, Time) also those that dispose of an instance.
   template <class Owner, class Argument>
   Input(Owner* owner, std::string name, PortQos qos, void (Owner::*handler)(Argument, Time), std::string help)
-      : InputBase(owner, std::move(name), type_support<T>(), qos, deliver_to(owner, handler), std::move(help)) {}
+      : InputBase(owner, std::move(name), shared_type_support<T>(), qos, deliver_to(owner, handler), std::move(help)) {}
 
   /// The newest sample; nullptr if there is none, if its lifespan is over or if it is older than the port's max_age.
   const T* latest() const {
@@ -144,7 +156,7 @@ template <class T>
 class Output : public OutputBase {
  public:
   Output(Component* owner, std::string name, PortQos qos, std::string help)
-      : OutputBase(owner, std::move(name), type_support<T>(), qos, std::move(help)) {}
+      : OutputBase(owner, std::move(name), shared_type_support<T>(), qos, std::move(help)) {}
 
   /// A default-initialised message that keeps the memory of one published before: no allocation in the steady state.
   Loan<T> loan() { return Loan<T>(loan_block(true)); }

@@ -89,15 +89,15 @@ Domain::~Domain() { dds_delete(domain_); }
 
 Domain::Topic Domain::topic(const std::string& name, const TypeSupport& type) {
   const std::lock_guard lock(mutex_);
-  if (const auto found = topics_.find(name); found != topics_.end()) {
-    if (found->second.type->layout_hash != type.layout_hash)
-      throw DdsError("topic " + name + " carries " + found->second.type->name + ", not " + type.name);
-    return found->second.topic;
-  }
   const TypeSupport*& known = types_.try_emplace(type.name, &type).first->second;
   if (known->layout_hash != type.layout_hash)
     throw DdsError(std::string("two modules of this container were built with different layouts of ") + type.name +
                    "; rebuild them against the same IDL package");
+  if (const auto found = topics_.find(name); found != topics_.end()) {
+    if (found->second.type != known)
+      throw DdsError("topic " + name + " carries " + found->second.type->name + ", not " + type.name);
+    return found->second.topic;
+  }
 
   SampleType* sample_type = make_sample_type(*known);
   ddsi_sertype* registered = sample_type;

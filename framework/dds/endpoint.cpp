@@ -51,7 +51,6 @@ QosHandle endpoint_qos(const QosProfile& profile, CyclonePart part) {
   const auto ownership = !carrier && profile.ownership == Ownership::exclusive ? DDS_OWNERSHIP_EXCLUSIVE
                                                                                : DDS_OWNERSHIP_SHARED;
   dds_qset_ownership(qos.get(), ownership);
-  if (!carrier) dds_qset_deadline(qos.get(), to_dds(profile.deadline));
   return qos;
 }
 
@@ -74,7 +73,7 @@ class ReaderCache {
   SampleSink& sink() { return sink_; }
   void use(ddsi_tkmap* map) { map_ = map; }
 
-  void store(const ddsi_writer_info& writer, ddsi_serdata* sample, ddsi_tkmap_instance* instance) {
+  void store(const ddsi_writer_info& writer, ddsi_serdata* sample, ddsi_tkmap_instance* instance) noexcept {
     // A writer that leaves tells so through unregister_wr; an unregistering sample carries no data.
     const bool dispose = sample->statusinfo & NN_STATUSINFO_DISPOSE;
     if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !dispose && sample->kind != SDK_DATA) return;
@@ -145,7 +144,9 @@ Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type
                CyclonePart part, SampleSink& sink) {
   const Domain::Topic handle = domain.topic(topic, type);
   const QosHandle qos = endpoint_qos(profile, part);
-  // Any budget a writer offers is good enough: it only says whether sending may wait for Cyclone's own thread.
+  // Any budget a writer offers is good enough: it only says whether sending may wait for Cyclone's own thread. And no
+  // deadline is requested: the sample cache watches it, while asking for it would refuse every writer that offers none,
+  // which is nearly every ROS 2 driver.
   dds_qset_latency_budget(qos.get(), DDS_INFINITY);
   auto* cache = new ReaderCache(reader_cache_operations(), sink);
   dds_listener_t* listener = dds_create_listener(&sink);
@@ -184,6 +185,7 @@ Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type
   const QosHandle qos = endpoint_qos(profile, part);
   if (part == CyclonePart::whole_profile) {
     dds_qset_lifespan(qos.get(), to_dds(profile.lifespan));
+    dds_qset_deadline(qos.get(), to_dds(profile.deadline));
     if (profile.ownership == Ownership::exclusive) dds_qset_ownership_strength(qos.get(), strength);
   }
   // A budget above zero leaves sending to Cyclone's own thread, so local readers do not wait for the network.

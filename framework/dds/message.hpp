@@ -3,6 +3,8 @@
 ///   fields([](const kervan::Field& field, auto& member) { … }, message);   // every member, in IDL order
 #pragma once
 
+#include <cstdint>
+
 namespace kervan {
 
 /// What the IDL says of one member beyond its C++ type.
@@ -21,6 +23,10 @@ const TypeSupport& type_support();
 /// Whether any member of the message has @key. Specialised by the generated code.
 template <class T>
 inline constexpr bool is_keyed = false;
+
+/// TypeSupport::layout_hash as it was when the including code was compiled. Specialised by the generated code.
+template <class T>
+inline constexpr std::uint64_t compiled_layout = 0;
 
 namespace detail {
 struct AnyVisitor {

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <memory>
 #include <new>
 #include <span>
@@ -18,6 +19,7 @@
 
 namespace kervan::dds {
 
+// The functions that Cyclone calls are noexcept: no exception may cross its C frames, and without memory there is no way on.
 namespace {
 
 std::atomic<std::uint64_t> serialised{0};
@@ -38,7 +40,7 @@ std::uint32_t cdr_size(const SampleBlock* block) {
 }
 
 /// The CDR of a block; made by whoever needs it first, kept until the block goes back to its pool.
-CdrBytes* cdr_of(const SampleBlock* const_block) {
+CdrBytes* cdr_of(const SampleBlock* const_block) noexcept {
   auto* block = const_cast<SampleBlock*>(const_block);
   CdrBytes* existing = block->cdr.load(std::memory_order_acquire);
   if (existing) return existing;
@@ -50,7 +52,7 @@ CdrBytes* cdr_of(const SampleBlock* const_block) {
   if (!made || made->capacity < size + padding) {
     std::free(made);
     made = static_cast<CdrBytes*>(std::malloc(sizeof(CdrBytes) + size + padding));
-    if (!made) throw std::bad_alloc();
+    if (!made) std::terminate();
     made->capacity = size + padding;
   }
   std::byte* bytes = made->data();
@@ -67,14 +69,14 @@ CdrBytes* cdr_of(const SampleBlock* const_block) {
   return existing;
 }
 
-bool eqkey(const ddsi_serdata* a, const ddsi_serdata* b) {
+bool eqkey(const ddsi_serdata* a, const ddsi_serdata* b) noexcept {
   return static_cast<const KeyedBlock*>(a)->key == static_cast<const KeyedBlock*>(b)->key;
 }
 
-std::uint32_t get_size(const ddsi_serdata* serdata) { return cdr_size(as_block(serdata)); }
+std::uint32_t get_size(const ddsi_serdata* serdata) noexcept { return cdr_size(as_block(serdata)); }
 
 /// Decodes received bytes, the encapsulation header included, into a fresh block; nullptr if they are not a message.
-ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span<const std::byte> payload) {
+ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span<const std::byte> payload) noexcept {
   const auto* sample_type = static_cast<const SampleType*>(type);
   const TypeSupport& support = *sample_type->support;
   SampleBlock* block = sample_type->pool->get(type, kind);
@@ -91,7 +93,7 @@ ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span
   return block;
 }
 
-ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment, std::size_t size) {
+ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment, std::size_t size) noexcept {
   // Fragments may overlap; the first one holds the whole header.
   const auto payload = [](const nn_rdata* f) {
     return reinterpret_cast<const std::byte*>(NN_RMSG_PAYLOADOFF(f->rmsg, NN_RDATA_PAYLOAD_OFF(f)));
@@ -109,7 +111,7 @@ ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const n
 }
 
 ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
-                           const ddsrt_iovec_t* parts, std::size_t size) {
+                           const ddsrt_iovec_t* parts, std::size_t size) noexcept {
   const std::unique_ptr<std::byte[]> bytes(new std::byte[size]);
   std::size_t have = 0;
   for (ddsrt_msg_iovlen_t i = 0; i < count; ++i) {
@@ -120,7 +122,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind, dds
   return decode(type, kind, {bytes.get(), have});
 }
 
-ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) {
+ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) noexcept {
   // A key hash may be an MD5 sum, from which no key can be recovered; for keyless types there is nothing to recover.
   if (!type->typekind_no_key) return nullptr;
   SampleBlock* block = static_cast<const SampleType*>(type)->pool->get(type, SDK_KEY);
@@ -139,7 +141,7 @@ ddsi_serdata* to_ser_ref(const ddsi_serdata* serdata, std::size_t offset, std::s
   return ddsi_serdata_ref(serdata);
 }
 
-ddsi_serdata* to_untyped(const ddsi_serdata* serdata) {
+ddsi_serdata* to_untyped(const ddsi_serdata* serdata) noexcept {
   auto* entry = new KeyedBlock;
   ddsi_serdata_init(entry, serdata->type, SDK_KEY);
   entry->type = nullptr;

@@ -88,7 +88,8 @@ ComponentInstance* Dispatcher::next() {
       ComponentInstance* instance = first_;
       first_ = instance->next_queued;
       if (!first_) last_ = nullptr;
-      if (first_ && waiting_ > 0) work_.notify_one();
+      // Somebody else must take the next one, or keep an eye on the timers, while this thread is busy.
+      if ((first_ || !wakes_.empty()) && waiting_ > 0) work_.notify_one();
       return instance;
     }
     ++waiting_;
@@ -104,8 +105,8 @@ ComponentInstance* Dispatcher::next() {
 void Dispatcher::run_one(ComponentInstance& instance) {
   instance.schedule.store(kRunning, std::memory_order_release);
   const Time now = dds::wall_now();
+  instance.stage(now);  // first: what has arrived in time has not missed its deadline
   instance.run_due({now, 0});
-  instance.stage(now);
   instance.run_inputs({now, 0});
   if (instance.take_status_changed()) instance.container().publish_status(instance);
   schedule(instance);

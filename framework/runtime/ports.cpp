@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/dds/hash.hpp"
+#include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/instance.hpp"
 
@@ -154,6 +155,8 @@ OutputPort::~OutputPort() { output_.port_ = nullptr; }
 
 void OutputPort::publish(dds::SampleBlock* block, bool dispose) {
   const Instant& at = owner_.instant();
+  // A handler may have run for long when it publishes, and age counts from here.
+  const Time stamp = owner_.container().spec().clock == ClockMode::wall ? dds::wall_now() : at.time;
   ++sequence_;
   if (traced_) {
     Hash64 hash(trace_);
@@ -164,7 +167,7 @@ void OutputPort::publish(dds::SampleBlock* block, bool dispose) {
     output_.type().hash(dds::value_of(block), hash);
     trace_ = hash.value();
   }
-  writer_.publish(block, at.time, dispose);
+  writer_.publish(block, stamp, dispose);
 }
 
 }  // namespace kervan::runtime

@@ -74,7 +74,7 @@ class InputPort final : public dds::SampleSink {
   std::uint64_t overflowed_ = 0;           ///< under spin_: dropped because the component did not run
   std::vector<dds::Arrival> arrived_;      ///< scratch of stage(), swapped with inbox_
   std::vector<StagedSample> staged_;       ///< scratch of stage()
-  std::vector<dds::SampleBlock*> given_;   ///< taken by the component, kept alive until its handler returns
+  std::vector<dds::SampleBlock*> given_;   ///< taken by the component, kept alive until it takes again
   std::atomic<bool> ready_{false};
   std::unique_ptr<dds::Reader> reader_;    ///< last: it calls into the members above
 

@@ -34,7 +34,7 @@ class Harness {
   /// Throws std::invalid_argument if there is no such input or it takes another type.
   template <class T>
   void feed(const std::string& input, const T& message) {
-    feed(input, type_support<T>(), &message);
+    feed(input, shared_type_support<T>(), &message);
   }
 
   /// Handles everything at the present time, then every timer and sample up to `duration` later.
@@ -43,14 +43,14 @@ class Harness {
   /// The newest message an output published; nullptr if it has published nothing yet.
   template <class T>
   const T* latest(const std::string& output) const {
-    return static_cast<const T*>(latest(output, type_support<T>()));
+    return static_cast<const T*>(latest(output, shared_type_support<T>()));
   }
 
   /// All messages an output published since the last call.
   template <class T>
   std::vector<Sample<T>> take(const std::string& output) {
     std::vector<Sample<T>> samples;
-    for (dds::SampleBlock* block : take(output, type_support<T>())) {
+    for (dds::SampleBlock* block : take(output, shared_type_support<T>())) {
       samples.emplace_back(block);
       dds::release(block);
     }

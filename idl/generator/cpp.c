@@ -222,6 +222,12 @@ static void add_type_support_declaration(const void *node, void *argument) {
     add_scoped_name(out, node, "::");
     text_add(out, "> = true;\n");
   }
+  text_add(out, "template <>\ninline constexpr std::uint64_t compiled_layout<::");
+  add_scoped_name(out, node, "::");
+  text_t layout = {NULL, 0, 0};
+  add_layout(&layout, node);
+  text_add(out, "> = 0x%016" PRIx64 ";\n", hash_of(&layout));
+  text_free(&layout);
   text_add(out, "template <>\n[[gnu::visibility(\"default\")]] const TypeSupport& type_support<::");
   add_scoped_name(out, node, "::");
   text_add(out, ">();\n");
@@ -247,16 +253,15 @@ void add_header(text_t *out, const idl_pstate_t *state, const char *self) {
 static void add_type_support(const void *node, void *argument) {
   text_t *out = ((writer_t *)argument)->out;
   if (!idl_is_struct(node)) return;
-  text_t name = {NULL, 0, 0}, scope = {NULL, 0, 0}, layout = {NULL, 0, 0};
+  text_t name = {NULL, 0, 0}, scope = {NULL, 0, 0};
   add_scoped_name(&name, node, "::");
   add_scope(&scope, node, "::");
-  add_layout(&layout, node);
   text_add(out, "\ntemplate <>\nconst TypeSupport& type_support<::%s>() {\n", name.data);
   text_add(out, "  static constexpr TypeSupport support = make_type_support<::%s>({\n", name.data);
   text_add(out, "      .name = \"%s\",\n", name.data);
   /* ROS 2 puts its wire types into a module dds_ and adds an underscore. */
   text_add(out, "      .wire_name = \"%s::dds_::%s_\",\n", scope.data, idl_identifier(node));
-  text_add(out, "      .layout_hash = 0x%016" PRIx64 ",\n", hash_of(&layout));
+  text_add(out, "      .layout_hash = compiled_layout<::%s>,\n", name.data);
   if (idl_is_topic(node, false)) {
     text_add(out, "      .descriptor = &");
     add_scoped_name(out, node, "_");
@@ -267,7 +272,6 @@ static void add_type_support(const void *node, void *argument) {
   text_add(out, "  });\n  return support;\n}\n");
   text_free(&name);
   text_free(&scope);
-  text_free(&layout);
 }
 
 void add_source(text_t *out, const idl_pstate_t *state, const char *self) {

@@ -11,7 +11,7 @@ namespace {
 std::string text_of(double number) {
   std::array<char, 32> buffer{};
   const auto [end, error] =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::fixed);
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::general, 8);
   return {buffer.data(), end};
 }
 }  // namespace

@@ -43,6 +43,8 @@ TEST(WaypointAstarComponent, WaitsForTheOdometryAndThenPlansOnce) {
   harness.feed("goal", pose_at(8.0, 0.0));
   harness.advance(10ms);
   EXPECT_FALSE(harness.latest<Path>("route"));
+  EXPECT_EQ(harness.state(), ComponentState::active) << "it may come any moment";
+  harness.advance(100ms);
   EXPECT_EQ(harness.state(), ComponentState::degraded);
   EXPECT_EQ(harness.reason(), "odom: nothing received yet");
   for (int i = 0; i < 5; ++i) {

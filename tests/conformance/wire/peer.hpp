@@ -1,0 +1,46 @@
+/// A process of the test's own: this very program, started with other arguments. It talks by lines on its stdout and ends
+/// when its stdin is closed; whatever happens, it does not outlive the test.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace kervan::test {
+
+/// How long a test waits for something that is sure to come, however slow the machine is.
+inline constexpr std::chrono::seconds kPatience{45};
+
+class Peer {
+ public:
+  /// Throws std::system_error when no process can be made.
+  explicit Peer(std::vector<std::string> arguments);
+  Peer(const Peer&) = delete;
+  Peer& operator=(const Peer&) = delete;
+  ~Peer();
+
+  /// The lines it has said so far.
+  const std::vector<std::string>& lines();
+  bool has_said(const std::string& line);
+  std::size_t lines_that_begin_with(const std::string& beginning);
+
+  /// Asks it to end and waits for that; its exit code, 128 + the signal that ended it, or -1 if it does not end.
+  int end();
+
+ private:
+  void close_stdin();
+
+  pid_t pid_ = -1;
+  int to_ = -1;
+  int from_ = -1;
+  std::string unfinished_;
+  std::vector<std::string> lines_;
+};
+
+/// Asks again and again until the answer is yes; false if it has not become so with all patience.
+bool eventually(const std::function<bool()>& condition);
+
+}  // namespace kervan::test
