@@ -1,4 +1,4 @@
-# kervan_component(<area/name> SOURCES <file>... [LIBRARIES <target>...])
+# kervan_component(<area/name> SOURCES <file>... [LIBRARIES <target>...] [NO_INSTALL])
 #
 # Builds one component as a module that the container loads by its type, "control/vff": the file
 # <area>/<name>.so below lib/kervan/components. Outside of Kervan's own tree, point KERVAN_COMPONENT_PATH at the folder
@@ -7,7 +7,7 @@ include_guard(GLOBAL)
 include(GNUInstallDirs)
 
 function(kervan_component type)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "NO_INSTALL" "" "SOURCES;LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SOURCES)
     message(FATAL_ERROR "kervan_component(${type}): wanted SOURCES <file>... [LIBRARIES <target>...]")
   endif()
@@ -34,7 +34,7 @@ function(kervan_component type)
     VISIBILITY_INLINES_HIDDEN ON
     INSTALL_RPATH "$ORIGIN/../../..")
   set_property(GLOBAL APPEND PROPERTY KERVAN_COMPONENT_TARGETS ${target})
-  if(PROJECT_NAME STREQUAL kervan)
+  if(PROJECT_NAME STREQUAL kervan AND NOT arg_NO_INSTALL)
     install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/kervan/components/${area})
   endif()
 endfunction()

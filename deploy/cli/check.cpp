@@ -105,7 +105,9 @@ void print_arguments(const ResolvedComposition& composition) {
   if (composition.source.arguments.empty()) return;
   std::vector<std::vector<std::string>> rows;
   for (const auto& argument : composition.source.arguments)
-    rows.push_back({"--arg " + argument.info.name + "=" + argument.value->shown(), argument.info.help});
+    rows.push_back(
+        {"--arg " + argument.info.name + "=" + (argument.value->is_list() ? "[...]" : argument.value->shown()),
+         argument.info.help});
   print_table(std::cout, rows);
   std::cout << '\n';
 }
