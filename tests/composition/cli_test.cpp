@@ -1,12 +1,11 @@
 // The program as a person meets it: exit codes, one line on stderr, and nothing written when something is refused.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
+
+#include "tests/program/program.hpp"
 
 namespace fs = std::filesystem;
 
@@ -16,7 +15,7 @@ const char* const without_errors = "2>/dev/null";
 
 struct Result {
   int code = -1;
-  std::string output;  ///< stdout and stderr
+  std::string output;  ///< what the command line lets through of stdout and stderr
 };
 
 class Program : public testing::Test {
@@ -28,15 +27,8 @@ class Program : public testing::Test {
   void TearDown() override { fs::remove_all(folder_); }
 
   Result kervan(const std::string& arguments, const std::string& errors = "2>&1") const {
-    const std::string command = "cd " + folder_.string() + " && " KERVAN_PROGRAM " " + arguments + " " + errors;
-    FILE* pipe = ::popen(command.c_str(), "r");
-    Result result;
-    std::array<char, 4096> buffer{};
-    while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), pipe))
-      result.output.append(buffer.data(), size);
-    const int status = ::pclose(pipe);
-    result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return result;
+    const auto result = kervan::test::run_line(KERVAN_PROGRAM, arguments + " " + errors, folder_);
+    return {result.code, result.out + result.err};
   }
 
   /// Refused with exit code 2 in one line, and the working folder is as it was.

@@ -1,9 +1,6 @@
 // The pages are true: tables come from the program, quoted code and linked files exist, commands can be given.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -11,40 +8,19 @@
 #include <regex>
 #include <sstream>
 
+#include "tests/program/program.hpp"
+
 namespace fs = std::filesystem;
 
 namespace {
 
 const fs::path root = KERVAN_SOURCE;
 
-struct Result {
-  int code = -1;
-  std::string output;
-};
+using kervan::test::lines_of;
+using kervan::test::text_of;
 
-Result kervan(const std::string& arguments) {
-  FILE* pipe = ::popen(("env -u KERVAN_COMPONENT_PATH -u KERVAN_SHARE " KERVAN_PROGRAM " " + arguments).c_str(), "r");
-  Result result;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), pipe))
-    result.output.append(buffer.data(), size);
-  const int status = ::pclose(pipe);
-  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
+kervan::test::Result kervan_says(const std::string& arguments) {
+  return kervan::test::run_line(KERVAN_PROGRAM, arguments, root);
 }
 
 std::string trimmed(const std::string& line) {
@@ -116,7 +92,7 @@ std::optional<std::string> misquoted(const std::vector<std::string>& quoted, con
 }
 
 TEST(ComponentPages, HaveTheTablesThatTheProgramPrints) {
-  const auto types = nlohmann::json::parse(kervan("describe --json").output).at("components");
+  const auto types = nlohmann::json::parse(kervan_says("describe --json").out).at("components");
   ASSERT_GE(types.size(), 7u);
   for (const auto& component : types) {
     const auto type = component.at("type").get<std::string>();
@@ -128,9 +104,9 @@ TEST(ComponentPages, HaveTheTablesThatTheProgramPrints) {
     ASSERT_NE(from, std::string::npos) << page << " has no line " << begin;
     const auto to = text.find(end, from);
     ASSERT_NE(to, std::string::npos) << page << " has no line " << end;
-    const Result printed = kervan("describe " + type + " --markdown");
+    const auto printed = kervan_says("describe " + type + " --markdown");
     EXPECT_EQ(printed.code, 0);
-    EXPECT_EQ(text.substr(from + begin.size(), to - from - begin.size()), printed.output)
+    EXPECT_EQ(text.substr(from + begin.size(), to - from - begin.size()), printed.out)
         << page << " is out of date; put between its markers what this prints: ./kervan describe " << type
         << " --markdown";
   }
@@ -189,11 +165,11 @@ void expect_good(const std::string& command) {
   if (verb == "build" || verb == "test" || verb == "bench") {
     EXPECT_NE(text_of(root / "kervan").find("    " + verb + ")\n"), std::string::npos) << command;
   } else if (const std::string file = trimmed(rest); file.starts_with("tests/package/")) {
-    EXPECT_EQ(kervan(verb + " --help").code, 0) << command;
+    EXPECT_EQ(kervan_says(verb + " --help").code, 0) << command;
     EXPECT_TRUE(fs::exists(root / file)) << command;
   } else {
-    const Result result = kervan((verb == "run" ? "check" : verb) + rest);
-    EXPECT_EQ(result.code, 0) << command << "\n" << result.output;
+    const auto result = kervan_says((verb == "run" ? "check" : verb) + rest);
+    EXPECT_EQ(result.code, 0) << command << "\n" << result.out + result.err;
   }
 }
 

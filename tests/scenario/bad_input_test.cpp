@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {

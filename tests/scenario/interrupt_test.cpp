@@ -9,7 +9,7 @@
 #include <array>
 #include <nlohmann/json.hpp>
 
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {

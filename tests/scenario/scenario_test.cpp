@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {

@@ -1,7 +1,7 @@
 // What a person sees: a bar on a terminal, the result alone elsewhere, and nothing else while all is well.
 #include <gtest/gtest.h>
 
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {

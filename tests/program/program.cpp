@@ -1,4 +1,4 @@
-#include "tests/scenario/program.hpp"
+#include "tests/program/program.hpp"
 
 #include <fcntl.h>
 #include <poll.h>
@@ -96,6 +96,10 @@ Result Process::wait(std::chrono::seconds longest) {
 }
 
 Result run(const Command& command, const fs::path& working_folder) { return Process(command, working_folder).wait(); }
+
+Result run_line(const std::string& program, const std::string& arguments, const fs::path& working_folder) {
+  return run({"/bin/sh", {"-c", "exec '" + program + "' " + arguments}}, working_folder);
+}
 
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);

@@ -57,6 +57,9 @@ class Process {
 /// Starts it and waits for its end.
 Result run(const Command& command, const std::filesystem::path& working_folder);
 
+/// As one would type it in a shell: `kervan` and these arguments, quotes and redirections included.
+Result run_line(const std::string& program, const std::string& arguments, const std::filesystem::path& working_folder);
+
 std::string text_of(const std::filesystem::path& file);
 std::vector<std::string> lines_of(const std::string& text);
 
