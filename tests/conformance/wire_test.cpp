@@ -1,5 +1,5 @@
-/// Between processes, over the loopback interface: Kervan's data path against a plain Cyclone C program under ROS 2's wire
-/// names, and against itself. Each test has a domain tag of its own, so no other run is heard.
+/// Between processes, over the loopback interface: Kervan's data path against a plain Cyclone C program under ROS 2's
+/// wire names, and against itself. Each test has a domain tag of its own, so no other run is heard.
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/prctl.h>
@@ -115,7 +115,12 @@ struct Network {
 
   std::vector<std::string> peer(const std::string& role, const QosProfile& profile, int count = 0,
                                 bool type_information = false) const {
-    return {"--peer", role, std::to_string(domain), tag, profile.name, std::to_string(count),
+    return {"--peer",
+            role,
+            std::to_string(domain),
+            tag,
+            profile.name,
+            std::to_string(count),
             type_information ? "typed" : "untyped"};
   }
 };
@@ -234,9 +239,9 @@ TEST(Wire, KeyedInstancesComeAndGoInAnotherProcess) {
     ASSERT_TRUE(eventually([&] { return peer.has_said("sample stall 5"); }));
   }
   EXPECT_TRUE(eventually([&] { return peer.has_said("gone"); }));
-  EXPECT_EQ(peer.lines(), (Lines{"ready", "sample stall 1", "sample keep away from everything that moves 2",
-                                 "sample stall 3", "dispose stall", "sample keep away from everything that moves 4",
-                                 "sample stall 5", "gone"}));
+  EXPECT_EQ(peer.lines(),
+            (Lines{"ready", "sample stall 1", "sample keep away from everything that moves 2", "sample stall 3",
+                   "dispose stall", "sample keep away from everything that moves 4", "sample stall 5", "gone"}));
   EXPECT_EQ(peer.end(), 0);
 }
 
@@ -267,8 +272,8 @@ TEST(Wire, ASampleIsSerialisedOnceForTwoRemoteReadersAndNotAtAllForTheLocalOne) 
 
   Peer first(network.peer("kervan-read-scans", reliable()));
   Peer second(network.peer("c-read", reliable()));
-  ASSERT_TRUE(eventually(
-      [&] { return first.has_said("ready") && second.has_said("ready") && writer.status().matched == 3; }));
+  ASSERT_TRUE(
+      eventually([&] { return first.has_said("ready") && second.has_said("ready") && writer.status().matched == 3; }));
   for (int n = 11; n <= 20; ++n) publish(writer, scan_number(n));
   ASSERT_TRUE(eventually([&] { return first.has_said("sample 20 right") && second.has_said("sample 20 right"); }));
   EXPECT_EQ(samples_of(first.lines()), right_samples(11, 20));

@@ -37,7 +37,8 @@ static scan_t scan_number(int n) {
 }
 
 static bool same_sequence(const dds_sequence_float *a, const dds_sequence_float *b) {
-  return a->_length == b->_length && (a->_length == 0 || memcmp(a->_buffer, b->_buffer, a->_length * sizeof(float)) == 0);
+  return a->_length == b->_length &&
+         (a->_length == 0 || memcmp(a->_buffer, b->_buffer, a->_length * sizeof(float)) == 0);
 }
 
 static bool same(const scan_t *a, const scan_t *b) {

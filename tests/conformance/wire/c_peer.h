@@ -1,5 +1,5 @@
-/* A DDS program without a line of Kervan: Cyclone's C API and the C types that idlc makes. It stands for every peer that is
-   not Kervan's, ROS 2 first of all. */
+/* A DDS program without a line of Kervan: Cyclone's C API and the C types that idlc makes. It stands for every peer
+   that is not Kervan's, ROS 2 first of all. */
 #ifndef KERVAN_TESTS_C_PEER_H
 #define KERVAN_TESTS_C_PEER_H
 
@@ -21,7 +21,7 @@ typedef struct c_peer_options {
 /* Waits a moment; false when stdin has been closed: the test is done with this process, or died. */
 bool c_peer_wanted(void);
 
-/* Each says "ready" on stdout when somebody is matched, goes on until it is no longer wanted, and gives an exit code. */
+/* Each says "ready" on stdout when somebody is matched, goes on while it is wanted, and gives an exit code. */
 
 /* Reads rt/scan; says "sample <number> right", or wrong, for each sample. */
 int c_peer_read(const c_peer_options_t *options);

@@ -1,5 +1,5 @@
-/// A process of the test's own: this very program, started with other arguments. It talks by lines on its stdout and ends
-/// when its stdin is closed; whatever happens, it does not outlive the test.
+/// A process of the test's own: this very program, started with other arguments. It talks by lines on its stdout and
+/// ends when its stdin is closed; whatever happens, it does not outlive the test.
 #pragma once
 
 #include <sys/types.h>

@@ -7,7 +7,8 @@ using namespace std::chrono_literals;
 
 /// Says in each message where that message lies.
 class Talker final : public kervan::Component {
-  kervan::Output<sensor_msgs::msg::LaserScan> out_{this, "talk", kervan::qos::event, "Messages that tell their address."};
+  kervan::Output<sensor_msgs::msg::LaserScan> out_{this, "talk", kervan::qos::event,
+                                                   "Messages that tell their address."};
   kervan::Timer tick_{this, 10ms, &Talker::on_tick};
 
   void on_tick(kervan::Time) {
