@@ -133,7 +133,7 @@ void ComponentInstance::run_inputs(Instant now) {
 }
 
 void ComponentInstance::notify() noexcept {
-  if (dispatcher) dispatcher->enqueue(*this);
+  if (Dispatcher* const target = dispatcher.load(std::memory_order_acquire)) target->enqueue(*this);
 }
 
 }  // namespace kervan::runtime

@@ -52,7 +52,7 @@ class ComponentInstance {
 
   // Scheduling under the wall clock; see Dispatcher.
   void notify() noexcept;
-  Dispatcher* dispatcher = nullptr;
+  std::atomic<Dispatcher*> dispatcher{nullptr};  ///< read by whichever thread a sample arrives in
   ComponentInstance* next_queued = nullptr;
   std::atomic<int> schedule{0};
   Time scheduled_for = Time::max();
