@@ -358,15 +358,19 @@ void bench_remote_reader(const char* program) {
 }
 
 void bench_cross_thread(int rounds) {
-  std::vector<double> ours, theirs, ratios;
+  std::vector<double> ours, queue, raw, ratios, raw_ratios;
   for (int round = 0; round < rounds; ++round) {
     ours.push_back(static_cast<double>(median(kervan_cross_thread_hops(1000))) * 1e-3);
-    theirs.push_back(static_cast<double>(median(bench::queue_hops(1000))) * 1e-3);
-    ratios.push_back(ours.back() / theirs.back());
+    queue.push_back(static_cast<double>(median(bench::queue_hops(1000))) * 1e-3);
+    raw.push_back(static_cast<double>(median(bench::raw_c_cross_thread_hops(1000))) * 1e-3);
+    ratios.push_back(ours.back() / queue.back());
+    raw_ratios.push_back(ours.back() / raw.back());
   }
   say("\n## One hop to another thread, 64 B at 1 kHz, p50 of %d alternating rounds\n\n", rounds);
-  say("| Kervan us | mutex and condition variable us | ratio | target |\n|---|---|---|---|\n");
-  say("| %.1f | %.1f | %.2f | 1.5 |\n", median(ours), median(theirs), median(ratios));
+  say("| reference | us | Kervan us | ratio | target |\n|---|---|---|---|---|\n");
+  say("| mutex and condition variable alone | %.1f | %.1f | %.2f | 1.5 |\n", median(queue), median(ours), median(ratios));
+  say("| raw C, listener and condition variable | %.1f | %.1f | %.2f | - |\n", median(raw), median(ours),
+      median(raw_ratios));
 }
 
 void bench_chain(int rounds, double duration) {
@@ -416,6 +420,7 @@ int main(int argc, char** argv) {
     const auto hops = kervan_cross_thread_hops(3000);
     std::printf("%lld ns\n", static_cast<long long>(median(hops)));
     std::printf("%lld ns queue\n", static_cast<long long>(median(bench::queue_hops(3000))));
+    std::printf("%lld ns raw C\n", static_cast<long long>(median(bench::raw_c_cross_thread_hops(3000))));
     return 0;
   }
   const bool smoke = argc == 2 && std::strcmp(argv[1], "--smoke") == 0;

@@ -3,6 +3,7 @@
 #include <dds/dds.h>
 #include <sys/resource.h>
 
+#include <atomic>
 #include <condition_variable>
 #include <cstdio>
 #include <cstdlib>
@@ -115,6 +116,57 @@ std::vector<std::int64_t> queue_hops(std::size_t count) {
       queue.push_back(std::move(message));
     }
     arrived.notify_one();
+  }
+  consumer.join();
+  return hops;
+}
+
+std::vector<std::int64_t> raw_c_cross_thread_hops(std::size_t count) {
+  struct Wake {
+    std::mutex mutex;
+    std::condition_variable arrived;
+    bool ready = false;
+  } wake;
+  Receiver receiver;
+  const Participant dds;
+  const dds_entity_t topic = dds.topic("cross");
+  dds_listener_t* listener = dds_create_listener(&wake);
+  dds_lset_data_available(listener, [](dds_entity_t, void* argument) {
+    auto& sleeper = *static_cast<Wake*>(argument);
+    {
+      const std::lock_guard lock(sleeper.mutex);
+      sleeper.ready = true;
+    }
+    sleeper.arrived.notify_one();
+  });
+  const dds_entity_t reader = checked(dds_create_reader(dds.participant, topic, dds.qos, listener));
+  dds_delete_listener(listener);
+  const dds_entity_t writer = checked(dds_create_writer(dds.participant, topic, dds.qos, nullptr));
+  std::vector<std::int64_t> hops;
+  hops.reserve(count);
+  std::atomic<bool> done{false};
+  std::thread consumer([&] {
+    while (hops.size() < count) {
+      {
+        std::unique_lock lock(wake.mutex);
+        wake.arrived.wait(lock, [&] { return wake.ready; });
+        wake.ready = false;
+      }
+      void* samples[1] = {&receiver.sample};
+      dds_sample_info_t info[1];
+      while (hops.size() < count && dds_take(reader, samples, info, 1, 1) > 0)
+        hops.push_back(now_ns() - receiver.sample.stamp);
+    }
+    done = true;
+  });
+  std::vector<std::uint8_t> data(64);
+  bench_msgs_msg_Payload message{};
+  message.data._buffer = data.data();
+  message.data._length = message.data._maximum = 64;
+  while (!done) {  // a newer sample may have pushed one out, so more than `count` may be needed
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    message.stamp = now_ns();
+    dds_write(writer, &message);
   }
   consumer.join();
   return hops;
