@@ -52,13 +52,19 @@ runtime::ContainerSpec container_spec(const composition::ResolvedComposition& co
     target.parameters = component.parameters;
     target.log_level = component.log_level;
     for (const composition::ResolvedPort& port : component.ports)
-      target.ports.push_back({port.info.name, port.topic, composition.topics.at(port.topic).qos.profile});
+      target.ports.push_back({.port = port.info.name,
+                              .topic = port.topic,
+                              .profile = composition.topics.at(port.topic).qos.profile,
+                              .direction = port.info.direction,
+                              .type = port.info.type,
+                              .layout_hash = port.info.layout_hash,
+                              .optional = port.info.qos.is_optional()});
   }
   for (const auto& [name, topic] : composition.topics) {
     if (topic.type != kMissionResultType || topic.writers.empty()) continue;
     spec.components.push_back({.name = "kervan/mission_listener",
                                .type = mission_listener.type,
-                               .ports = {{"result", name, topic.qos.profile}}});
+                               .ports = {{.port = "result", .topic = name, .profile = topic.qos.profile}}});
     break;
   }
   return spec;

@@ -60,9 +60,11 @@ std::string cyclone_configuration(const DomainConfig& config) {
   // processes share an interface without multicast, and take ten seconds to notice that a peer died.
   xml += "<Interfaces><NetworkInterface name=\"" + escaped(config.interface) + "\"" +
          (config.interface == "lo" ? " multicast=\"true\"" : "") + "/></Interfaces></General><Discovery>";
+  if (config.external_id) xml += "<ExternalDomainId>" + std::to_string(*config.external_id) + "</ExternalDomainId>";
   if (!config.tag.empty()) xml += "<Tag>" + escaped(config.tag) + "</Tag>";
-  xml += "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
-         "<LeaseDuration>2s</LeaseDuration>";
+  xml +=
+      "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
+      "<LeaseDuration>2s</LeaseDuration>";
   if (!config.peers.empty()) {
     xml += "<Peers>";
     for (const std::string& peer : config.peers) xml += "<Peer address=\"" + escaped(peer) + "\"/>";

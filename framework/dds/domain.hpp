@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -20,10 +21,12 @@ class DdsError : public std::runtime_error {
 
 struct DomainConfig {
   std::uint32_t id = 0;
-  bool network = true;           ///< false: no sockets at all, the domain ends with this process
-  std::string interface = "lo";  ///< name of the network interface
-  std::string tag = {};            ///< domains with different tags do not see each other
+  bool network = true;                  ///< false: no sockets at all, the domain ends with this process
+  std::string interface = "lo";         ///< name of the network interface
+  std::string tag = {};                 ///< domains with different tags do not see each other
   std::vector<std::string> peers = {};  ///< addresses to look for when the network has no multicast
+  /// The domain's number on the network when it is not `id`: several domains of one process meet there like processes.
+  std::optional<std::uint32_t> external_id = {};
 };
 
 /// The configuration that Cyclone is given, as XML.
@@ -45,8 +48,8 @@ class Domain {
     const SampleType* type = nullptr;
   };
 
-  /// The topic called `name` ("/r1/scan", on the wire "rt/r1/scan"), made on first use. Throws DdsError when the name is
-  /// in use with another type, or the type's name with another layout: Cyclone itself would accept both silently.
+  /// The topic called `name` ("/r1/scan", on the wire "rt/r1/scan"), made on first use. Throws DdsError when the name
+  /// is in use with another type, or the type's name with another layout: Cyclone itself would accept both silently.
   Topic topic(const std::string& name, const TypeSupport& type);
 
   std::int32_t participant() const { return participant_; }

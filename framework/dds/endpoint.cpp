@@ -19,6 +19,13 @@ bool is_disposed(const SampleBlock* block) noexcept {
   return (block->statusinfo & NN_STATUSINFO_DISPOSE) != 0 || block->kind != SDK_DATA;
 }
 
+std::optional<WriterIdentity> parse_identity(std::string_view user_data) {
+  unsigned index = 0;
+  unsigned long long layout = 0;
+  if (std::sscanf(std::string(user_data).c_str(), "kw=%u;kl=%llx;", &index, &layout) != 2) return std::nullopt;
+  return WriterIdentity{index, layout};
+}
+
 namespace {
 
 struct QosDeleter {
@@ -48,17 +55,17 @@ QosHandle endpoint_qos(const QosProfile& profile, CyclonePart part) {
   } else {
     dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
   }
-  const auto ownership = !carrier && profile.ownership == Ownership::exclusive ? DDS_OWNERSHIP_EXCLUSIVE
-                                                                               : DDS_OWNERSHIP_SHARED;
+  const auto ownership =
+      !carrier && profile.ownership == Ownership::exclusive ? DDS_OWNERSHIP_EXCLUSIVE : DDS_OWNERSHIP_SHARED;
   dds_qset_ownership(qos.get(), ownership);
   return qos;
 }
 
-/// Kervan's reader history cache. Cyclone calls store() for each sample instead of keeping it, so there is one cache with
-/// one meaning of history, lifespan and ownership: the port's.
+/// Kervan's reader history cache. Cyclone calls store() for each sample instead of keeping it, so there is one cache
+/// with one meaning of history, lifespan and ownership: the port's.
 ///
-/// It holds on to the entries of Cyclone's instance map while their instances live. Otherwise every publish would make the
-/// entry anew and hand it to the garbage collector's thread, which costs more than the hop itself.
+/// It holds on to the entries of Cyclone's instance map while their instances live. Otherwise every publish would make
+/// the entry anew and hand it to the garbage collector's thread, which costs more than the hop itself.
 class ReaderCache {
  public:
   ReaderCache(const dds_rhc_ops& operations, SampleSink& sink) : sink_(sink) { base_.common.ops = &operations; }
@@ -177,6 +184,19 @@ EndpointStatus Reader::status() const {
     status.last_incompatible_id = incompatible.last_policy_id;
   }
   return status;
+}
+
+std::optional<WriterIdentity> Reader::matched_writer(std::uint64_t handle) const {
+  dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(entity_, handle);
+  if (!endpoint) return std::nullopt;
+  std::optional<WriterIdentity> identity;
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (dds_qget_userdata(endpoint->qos, &data, &size) && data)
+    identity = parse_identity({static_cast<const char*>(data), size});
+  dds_free(data);
+  dds_builtintopic_free_endpoint(endpoint);
+  return identity;
 }
 
 Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,

@@ -4,7 +4,9 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "framework/component/qos.hpp"
 #include "framework/dds/domain.hpp"
@@ -19,18 +21,27 @@ enum class CyclonePart { whole_profile, carrier };
 
 /// One event of an endpoint, as a value.
 struct EndpointStatus {
-  std::uint32_t matched = 0;               ///< peers matched now
+  std::uint32_t matched = 0;  ///< peers matched now
   std::uint32_t matched_ever = 0;
   std::uint32_t incompatible = 0;          ///< peers refused for their QoS, so far
   std::uint32_t last_incompatible_id = 0;  ///< DDS policy id of the last refusal
 };
 
+/// What one of our writers says of itself to every peer.
+struct WriterIdentity {
+  unsigned index = 0;             ///< its place in the composition
+  std::uint64_t layout_hash = 0;  ///< of the type it publishes
+};
+
+/// Reads what a writer's user data says; nothing if it is none of ours.
+std::optional<WriterIdentity> parse_identity(std::string_view user_data);
+
 /// What travels with a block from its writer to a reader of it.
 struct Arrival {
-  SampleBlock* block;             ///< not retained; retain it to keep it
-  std::uint64_t writer;           ///< Cyclone's instance handle of the writer
-  std::uint64_t instance;         ///< the same for equal keys, as long as the domain lives
-  std::int32_t strength;          ///< the writer's ownership strength
+  SampleBlock* block;      ///< not retained; retain it to keep it
+  std::uint64_t writer;    ///< Cyclone's instance handle of the writer
+  std::uint64_t instance;  ///< the same for equal keys, as long as the domain lives
+  std::int32_t strength;   ///< the writer's ownership strength
 };
 
 /// Receives samples under Cyclone's locks, in the thread that published or that received from the network. It may only
@@ -50,14 +61,17 @@ class SampleSink {
 class Reader {
  public:
   /// `sink` must outlive the reader. Throws DdsError.
-  Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
-         CyclonePart part, SampleSink& sink);
+  Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile, CyclonePart part,
+         SampleSink& sink);
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   /// After this no call into the sink is under way or will come.
   ~Reader();
 
   EndpointStatus status() const;
+
+  /// Who a writer is that is matched now; nothing if it is not, or none of ours. Not from a SampleSink's call.
+  std::optional<WriterIdentity> matched_writer(std::uint64_t handle) const;
 
  private:
   std::int32_t entity_ = 0;
@@ -66,8 +80,8 @@ class Reader {
 class Writer {
  public:
   /// `index` is the writer's place in the composition, the same everywhere. Throws DdsError.
-  Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
-         CyclonePart part, int strength, unsigned index);
+  Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile, CyclonePart part,
+         int strength, unsigned index);
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer();

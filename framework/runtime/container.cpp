@@ -35,16 +35,22 @@ std::string_view to_text(RunEnd end) {
 
 Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(std::move(spec)) {
   domain_ = std::make_unique<dds::Domain>(spec_.domain);
-  log_sinks_ = std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder,
-                                          spec_.publish_log ? domain_.get() : nullptr);
+  log_sinks_ =
+      std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder, spec_.publish_log ? domain_.get() : nullptr);
   status_writer_ = std::make_unique<StatusWriter>(*domain_);
+  // A writer's index counts the outputs of all components before it, wherever they run.
   unsigned first_writer = 0;
-  for (const ComponentSpec& component : spec_.components) {
+  for (unsigned index = 0; index < spec_.components.size(); ++index) {
+    const ComponentSpec& component = spec_.components[index];
+    if (!is_local(spec_, component)) {
+      first_writer +=
+          static_cast<unsigned>(std::ranges::count(component.ports, PortDirection::output, &PortBinding::direction));
+      continue;
+    }
     const ComponentClass* type = registry.find(component.type);
     if (!type) throw ConfigError({}, "there is no component type '" + component.type + "'");
     try {
-      instances_.push_back(std::make_unique<ComponentInstance>(
-          *this, component, *type, static_cast<unsigned>(instances_.size()), first_writer));
+      instances_.push_back(std::make_unique<ComponentInstance>(*this, component, *type, index, first_writer));
     } catch (const ParameterError& error) {
       throw ParameterError(component.name + "." + error.parameter(), error.message());
     }
@@ -105,9 +111,14 @@ std::optional<std::string> Container::finish_reason() {
   return finish_ ? std::optional(finish_->second) : std::nullopt;
 }
 
-unsigned Container::writer_index(std::uint64_t handle) const {
-  const auto found = writer_indices_.find(handle);
-  return found != writer_indices_.end() ? found->second : ~0u;
+unsigned Container::writer_index(const InputPort& port, std::uint64_t handle) {
+  const std::lock_guard lock(writer_indices_mutex_);
+  if (const auto found = writer_indices_.find(handle); found != writer_indices_.end()) return found->second;
+  // Of another process: it says so itself. One that said nothing, or is gone already, comes last.
+  const std::optional<dds::WriterIdentity> identity = port.reader().matched_writer(handle);
+  if (!identity) return ~0u;
+  writer_indices_.emplace(handle, identity->index);
+  return identity->index;
 }
 
 void Container::publish_status(ComponentInstance& instance) {

@@ -36,15 +36,15 @@ std::string_view to_text(RunEnd end);
 
 struct RunReport {
   RunEnd end = RunEnd::finished;
-  std::string reason = {};    ///< one sentence
-  Time ended_at{};            ///< on the composition's clock
-  std::uint64_t cycles = 0;   ///< delta cycles run
+  std::string reason = {};   ///< one sentence
+  Time ended_at{};           ///< on the composition's clock
+  std::uint64_t cycles = 0;  ///< delta cycles run
 };
 
 struct RunControl {
-  Duration limit = forever;                     ///< on the composition's clock, from the start of the run
-  const std::atomic<bool>* stop = nullptr;      ///< ends the run in good order when set
-  std::function<void(Time)> progress = {};      ///< called about ten times a second of wall time
+  Duration limit = forever;                 ///< on the composition's clock, from the start of the run
+  const std::atomic<bool>* stop = nullptr;  ///< ends the run in good order when set
+  std::function<void(Time)> progress = {};  ///< called about ten times a second of wall time
 };
 
 class Container {
@@ -78,7 +78,8 @@ class Container {
   // Used by the ports and instances.
   void input_ready(InputPort& port) noexcept;
   void request_finish(unsigned component, std::string why);
-  unsigned writer_index(std::uint64_t handle) const;
+  /// The place in the composition of a writer that `port` has had samples of; ~0u if it has none.
+  unsigned writer_index(const InputPort& port, std::uint64_t handle);
   void publish_status(ComponentInstance& instance);
   std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
 
@@ -101,7 +102,8 @@ class Container {
   std::unique_ptr<dds::Domain> domain_;
   std::unique_ptr<LogSinks> log_sinks_;
   std::unique_ptr<StatusWriter> status_writer_;
-  std::map<std::uint64_t, unsigned> writer_indices_;
+  std::mutex writer_indices_mutex_;
+  std::map<std::uint64_t, unsigned> writer_indices_;  ///< by Cyclone's instance handle; under the mutex
   std::vector<std::unique_ptr<ComponentInstance>> instances_;
   std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
   std::unique_ptr<WorkerPool> workers_;

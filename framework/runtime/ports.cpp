@@ -91,7 +91,7 @@ void InputPort::stage(Time now) {
   staged_.clear();
   for (std::size_t i = first; i < arrived_.size(); ++i) {
     const dds::Arrival& arrival = arrived_[i];
-    const unsigned writer = needs_writers ? owner_.container().writer_index(arrival.writer) : 0;
+    const unsigned writer = needs_writers ? owner_.container().writer_index(*this, arrival.writer) : 0;
     const Time received = ordered ? now : dds::received_at(arrival.block);
     staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
   }
@@ -101,7 +101,7 @@ void InputPort::stage(Time now) {
     std::stable_sort(staged_.begin(), staged_.end(),
                      [](const StagedSample& a, const StagedSample& b) { return a.writer < b.writer; });
   cache_.stage(staged_);
-  for (const std::uint64_t writer : gone) cache_.writer_gone(owner_.container().writer_index(writer));
+  for (const std::uint64_t writer : gone) cache_.writer_gone(owner_.container().writer_index(*this, writer));
 }
 
 void InputPort::deliver(Time now) {
