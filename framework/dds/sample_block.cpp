@@ -241,7 +241,6 @@ DataPathStatistics data_path_statistics() {
 
 SampleBlock* BlockPool::allocate() {
   blocks_allocated.fetch_add(1, std::memory_order_relaxed);
-  allocated_.fetch_add(1, std::memory_order_relaxed);
   const std::size_t offset = value_offset(support_);
   const auto alignment = static_cast<std::align_val_t>(std::max(support_.alignment, alignof(std::max_align_t)));
   auto* memory = static_cast<unsigned char*>(::operator new(offset + support_.size, alignment));

@@ -59,7 +59,6 @@ class BlockPool {
   void close() noexcept;
 
   const TypeSupport& support() const { return support_; }
-  std::size_t allocated() const { return allocated_.load(std::memory_order_relaxed); }
 
  private:
   ~BlockPool() = default;
@@ -81,7 +80,6 @@ class BlockPool {
   std::size_t free_bytes_ = 0;
   std::size_t outstanding_ = 0;
   bool closed_ = false;
-  std::atomic<std::size_t> allocated_{0};
 };
 
 /// Our Cyclone sample type.

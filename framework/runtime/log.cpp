@@ -75,7 +75,6 @@ class RosoutSink final : public spdlog::sinks::base_sink<std::mutex> {
 
 LogTime::LogTime(Time now) : outer_(std::exchange(log_time, now)) {}
 LogTime::~LogTime() { log_time = outer_; }
-Time LogTime::current() { return log_time; }
 
 LogSinks::LogSinks(bool console, const std::filesystem::path& folder, dds::Domain* rosout) {
   if (console) {

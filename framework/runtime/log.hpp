@@ -30,8 +30,6 @@ class LogTime {
   LogTime(const LogTime&) = delete;
   LogTime& operator=(const LogTime&) = delete;
 
-  static Time current();
-
  private:
   Time outer_;
 };
