@@ -134,12 +134,30 @@ class BasicSizer {
 };
 using Sizer = BasicSizer<true>;
 
+/// A run of numbers that a Writer did not copy, except for its first and last `edge` bytes: it lies in the message as the
+/// wire wants it. Any part of the written form that is no longer than an edge is thus in one piece in one of the two.
+struct LongRun {
+  static constexpr std::size_t edge = std::size_t{64} << 10;  ///< no datagram is longer
+  static constexpr std::size_t shortest = 4 * edge;           ///< below, a copy is as good
+
+  std::size_t offset = 0;            ///< in the written form
+  const std::byte* bytes = nullptr;  ///< in the message; nullptr: everything was copied
+  std::size_t size = 0;
+
+  bool contains(std::size_t from, std::size_t count) const {
+    return bytes && from >= offset && from + count <= offset + size;
+  }
+};
+
 /// The sink that writes into memory of the size a Sizer found.
 template <Endian order>
 class BasicWriter {
  public:
   BasicWriter(void* memory, std::size_t size)
       : begin_(static_cast<std::byte*>(memory)), at_(begin_), end_(begin_ + size) {}
+
+  /// Notes the first long run of numbers in `run`, which must outlive the writer, instead of copying it.
+  void leave_out(LongRun& run) { long_run_ = &run; }
 
   std::size_t size() const { return static_cast<std::size_t>(at_ - begin_); }
 
@@ -155,7 +173,10 @@ class BasicWriter {
     if (count == 0) return;
     if constexpr (order == Endian::native || sizeof(T) == 1) {
       align(sizeof(T));
-      copy(values, count * sizeof(T));
+      if (long_run_ && !long_run_->bytes && count * sizeof(T) >= LongRun::shortest)
+        leave_out(reinterpret_cast<const std::byte*>(values), count * sizeof(T));
+      else
+        copy(values, count * sizeof(T));
     } else {
       for (std::size_t i = 0; i < count; ++i) number(values[i]);
     }
@@ -179,9 +200,18 @@ class BasicWriter {
     at_ += size;
   }
 
+  void leave_out(const std::byte* from, std::size_t size) {
+    assert(size <= static_cast<std::size_t>(end_ - at_));
+    *long_run_ = {this->size(), from, size};
+    std::memcpy(at_, from, LongRun::edge);
+    std::memcpy(at_ + size - LongRun::edge, from + size - LongRun::edge, LongRun::edge);
+    at_ += size;
+  }
+
   std::byte* begin_;
   std::byte* at_;
   std::byte* end_;
+  LongRun* long_run_ = nullptr;
 };
 using Writer = BasicWriter<Endian::little>;        ///< for the wire and for comparing keys
 using BigEndianWriter = BasicWriter<Endian::big>;  ///< for the key hash, which DDS wants in this order

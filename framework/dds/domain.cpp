@@ -56,10 +56,13 @@ class LogCapture {
 std::string cyclone_configuration(const DomainConfig& config) {
   std::string xml = "<General>";
   if (!config.network) return xml + "<Transport>none</Transport></General>";
-  // The loopback interface carries multicast but does not say so. Index and lease: Cyclone's defaults let only nine
-  // processes share an interface without multicast, and take ten seconds to notice that a peer died.
+  // The loopback interface carries multicast but does not say so, and takes the largest datagrams in one piece, which
+  // saves a fifth of the time a large message takes. Index and lease: Cyclone's defaults let only nine processes share an
+  // interface without multicast, and take ten seconds to notice that a peer died.
+  const bool loopback = config.interface == "lo";
   xml += "<Interfaces><NetworkInterface name=\"" + escaped(config.interface) + "\"" +
-         (config.interface == "lo" ? " multicast=\"true\"" : "") + "/></Interfaces></General><Discovery>";
+         (loopback ? " multicast=\"true\"" : "") + "/></Interfaces>" +
+         (loopback ? "<MaxMessageSize>65000B</MaxMessageSize>" : "") + "</General><Discovery>";
   if (config.external_id) xml += "<ExternalDomainId>" + std::to_string(*config.external_id) + "</ExternalDomainId>";
   if (!config.tag.empty()) xml += "<Tag>" + escaped(config.tag) + "</Tag>";
   xml +=

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <memory>
 #include <new>
 #include <span>
@@ -59,10 +60,13 @@ CdrBytes* cdr_of(const SampleBlock* const_block) noexcept {
   std::memcpy(bytes, cdr::encapsulation(body_size).data(), cdr::encapsulation_size);
   std::memset(bytes + size, 0, padding);
   cdr::Writer writer(bytes + cdr::encapsulation_size, body_size);
+  made->long_run = {};
+  writer.leave_out(made->long_run);
   if (block->kind == SDK_KEY)
     support.write_key(block->value, writer);
   else
     support.write_cdr(block->value, writer);
+  made->long_run.offset += cdr::encapsulation_size;
   serialised.fetch_add(1, std::memory_order_relaxed);
   if (block->cdr.compare_exchange_strong(existing, made, std::memory_order_acq_rel)) return made;
   std::free(made);
@@ -132,13 +136,31 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) noexce
 }
 
 void to_ser(const ddsi_serdata* serdata, std::size_t offset, std::size_t size, void* buffer) {
-  std::memcpy(buffer, cdr_of(as_block(serdata))->data() + offset, size);
+  cdr_of(as_block(serdata))->copy(offset, size, static_cast<std::byte*>(buffer));
 }
 
 ddsi_serdata* to_ser_ref(const ddsi_serdata* serdata, std::size_t offset, std::size_t size, ddsrt_iovec_t* part) {
-  part->iov_base = cdr_of(as_block(serdata))->data() + offset;
+  CdrBytes* cdr = cdr_of(as_block(serdata));
+  const std::byte* bytes = cdr->find(offset, size);
+  if (!bytes) {  // more than a datagram: the whole for a reader of another implementation in this process
+    auto* copied = static_cast<std::byte*>(std::malloc(size));
+    if (!copied) std::terminate();
+    cdr->copy(offset, size, copied);
+    bytes = copied;
+  }
+  part->iov_base = const_cast<std::byte*>(bytes);
   part->iov_len = size;
   return ddsi_serdata_ref(serdata);
+}
+
+void to_ser_unref(ddsi_serdata* serdata, const ddsrt_iovec_t* part) {
+  CdrBytes* cdr = cdr_of(as_block(serdata));
+  const auto* bytes = static_cast<const std::byte*>(part->iov_base);
+  const auto is_in = [bytes](const std::byte* begin, std::size_t size) {
+    return begin && std::greater_equal<>()(bytes, begin) && std::less<>()(bytes, begin + size);
+  };
+  if (!is_in(cdr->data(), cdr->capacity) && !is_in(cdr->long_run.bytes, cdr->long_run.size)) std::free(part->iov_base);
+  ddsi_serdata_unref(serdata);
 }
 
 ddsi_serdata* to_untyped(const ddsi_serdata* serdata) noexcept {
@@ -186,7 +208,7 @@ const ddsi_serdata_ops& serdata_operations() {
     ops.from_sample = [](const ddsi_sertype*, ddsi_serdata_kind, const void*) -> ddsi_serdata* { return nullptr; };
     ops.to_ser = to_ser;
     ops.to_ser_ref = to_ser_ref;
-    ops.to_ser_unref = [](ddsi_serdata* serdata, const ddsrt_iovec_t*) { ddsi_serdata_unref(serdata); };
+    ops.to_ser_unref = to_ser_unref;
     ops.to_sample = [](const ddsi_serdata*, void*, void**, void*) { return false; };
     ops.to_untyped = to_untyped;
     ops.untyped_to_sample = [](const ddsi_sertype*, const ddsi_serdata*, void*, void**, void*) { return false; };
@@ -237,6 +259,21 @@ const ddsi_sertype_ops& sertype_operations() {
 
 DataPathStatistics data_path_statistics() {
   return {serialised.load(), deserialised.load(), refused.load(), blocks_allocated.load()};
+}
+
+const std::byte* CdrBytes::find(std::size_t offset, std::size_t size) {
+  if (long_run.contains(offset, size)) return long_run.bytes + (offset - long_run.offset);
+  return !long_run.bytes || size <= cdr::LongRun::edge ? data() + offset : nullptr;
+}
+
+void CdrBytes::copy(std::size_t offset, std::size_t size, std::byte* to) {
+  const std::size_t end = offset + size;
+  const std::size_t run_begin = long_run.bytes ? std::clamp(long_run.offset, offset, end) : end;
+  const std::size_t run_end = long_run.bytes ? std::clamp(long_run.offset + long_run.size, offset, end) : end;
+  std::memcpy(to, data() + offset, run_begin - offset);
+  if (run_end > run_begin)
+    std::memcpy(to + (run_begin - offset), long_run.bytes + (run_begin - long_run.offset), run_end - run_begin);
+  std::memcpy(to + (run_end - offset), data() + run_end, end - run_end);
 }
 
 SampleBlock* BlockPool::allocate() {

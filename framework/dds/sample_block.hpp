@@ -13,6 +13,7 @@
 #include <string>
 
 #include "framework/component/time.hpp"
+#include "framework/dds/cdr_writer.hpp"
 #include "framework/dds/type_support.hpp"
 
 namespace kervan::dds {
@@ -25,10 +26,15 @@ struct KeyedBlock : ddsi_serdata {
   std::string key;            ///< big-endian key as DDS prescribes for the key hash; empty for keyless types
 };
 
-/// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4.
+/// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4. A long run of numbers, as an image has
+/// it, is not copied here but sent out of the value.
 struct CdrBytes {
-  std::size_t capacity;  ///< bytes behind this struct
+  std::size_t capacity;   ///< bytes behind this struct
+  cdr::LongRun long_run;  ///< counted from data()
   std::byte* data() { return reinterpret_cast<std::byte*>(this + 1); }
+  /// These bytes in one piece, here or in the value; nullptr if they are in two.
+  const std::byte* find(std::size_t offset, std::size_t size);
+  void copy(std::size_t offset, std::size_t size, std::byte* to);
 };
 
 struct SampleBlock : KeyedBlock {

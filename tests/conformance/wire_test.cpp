@@ -8,11 +8,13 @@
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <mutex>
 #include <stdexcept>
 
 #include "framework/component/sample.hpp"
 #include "framework/dds/endpoint.hpp"
+#include "framework/dds/sample_block.hpp"
 #include "framework/dds/statistics.hpp"
 #include "framework/dds/wall_clock.hpp"
 #include "kervan_msgs/msg/MotionRequest.hpp"
@@ -44,7 +46,7 @@ LaserScan scan_number(int n) {
   scan.scan_time = x / 16.0F;
   scan.range_min = 0.05F;
   scan.range_max = x + 0.5F;
-  scan.ranges.resize(n % 5 == 0 ? 30000U : static_cast<unsigned>(n % 5));
+  scan.ranges.resize(n % 5 == 0 ? 100000U : static_cast<unsigned>(n % 5));
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) scan.ranges[i] = x + 0.5F * static_cast<float>(i);
   for (int i = 0; i < n % 3; ++i) scan.intensities.push_back(-static_cast<float>(i));
   return scan;
@@ -283,6 +285,37 @@ TEST(Wire, ASampleIsSerialisedOnceForTwoRemoteReadersAndNotAtAllForTheLocalOne) 
   EXPECT_EQ(after.deserialised, before.deserialised);
   EXPECT_EQ(first.end(), 0);
   EXPECT_EQ(second.end(), 0);
+}
+
+TEST(Wire, EveryPartOfALargeSampleIsTheSameWhetherItWasCopiedOrIsSentOutOfTheValue) {
+  const Network network = Network::of_its_own();
+  dds::Domain domain(network.config());
+  dds::Writer writer(domain, "/scan", type_support<LaserScan>(), reliable(), dds::CyclonePart::whole_profile, 0, 0);
+  dds::SampleBlock* block = writer.loan(true);
+  auto& scan = *static_cast<LaserScan*>(dds::mutable_value_of(block));
+  scan = scan_number(5);
+  const TypeSupport& support = type_support<LaserScan>();
+  std::vector<std::byte> expected(cdr::encapsulation_size + support.cdr_size(&scan));
+  cdr::Writer plain(expected.data() + cdr::encapsulation_size, expected.size() - cdr::encapsulation_size);
+  support.write_cdr(&scan, plain);
+  const auto header = cdr::encapsulation(expected.size() - cdr::encapsulation_size);
+  std::copy(header.begin(), header.end(), expected.begin());
+  ASSERT_EQ(expected.size() % 4, 0U);
+
+  for (const std::size_t length : {std::size_t{4}, std::size_t{1344}, std::size_t{64000}, expected.size()}) {
+    for (std::size_t offset = 0; offset < expected.size(); offset += length) {
+      const std::size_t size = std::min(length, expected.size() - offset);
+      std::vector<std::byte> copy(size);
+      ddsi_serdata_to_ser(block, offset, size, copy.data());
+      ASSERT_TRUE(std::equal(copy.begin(), copy.end(), expected.begin() + static_cast<std::ptrdiff_t>(offset)));
+      ddsrt_iovec_t part;
+      ddsi_serdata* serdata = ddsi_serdata_to_ser_ref(block, offset, size, &part);
+      ASSERT_EQ(part.iov_len, size);
+      ASSERT_EQ(std::memcmp(part.iov_base, expected.data() + offset, size), 0) << offset << " " << size;
+      ddsi_serdata_to_ser_unref(serdata, &part);
+    }
+  }
+  dds::release(block);
 }
 
 // --------------------------------------------------------------------------------- what nobody should send

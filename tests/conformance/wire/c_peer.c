@@ -10,7 +10,7 @@
 
 typedef sensor_msgs_msg_dds__LaserScan_ scan_t;
 
-enum { MAX_RANGES = 30000, PACE_MS = 10 };
+enum { MAX_RANGES = 100000, PACE_MS = 10 };
 
 static float buffer_of_ranges[MAX_RANGES], buffer_of_intensities[3];
 
