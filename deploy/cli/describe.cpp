@@ -11,7 +11,6 @@
 namespace kervan::cli {
 namespace {
 
-using composition::duration_text;
 using nlohmann::ordered_json;
 
 std::string unit_of(const ParameterInfo& info) {
@@ -45,6 +44,9 @@ std::string requirements(const PortInfo& port) {
   std::string text = port.qos.profile();
   if (port.qos.max_age() != forever) text += ", at most " + duration_text(port.qos.max_age()) + " old";
   if (port.qos.deadline() != forever) text += ", deadline " + duration_text(port.qos.deadline());
+  if (port.qos.lease() != forever) text += ", lease " + duration_text(port.qos.lease());
+  if (port.qos.is_lossless()) text += ", lossless";
+  if (port.qos.is_from_before()) text += ", also from before";
   if (port.qos.is_optional()) text += ", optional";
   return text;
 }

@@ -61,6 +61,9 @@ struct Restart {
   RestartPolicy policy = RestartPolicy::never;
   int max = 5;  ///< more restarts than this within `window` end the attempts
   Duration window = std::chrono::seconds(30);
+  Duration backoff = std::chrono::milliseconds(100);  ///< before the first restart; doubled for each one after it
+  Duration longest_backoff = std::chrono::seconds(5);
+  int quarantine = 0;  ///< a component that crashed so often within `window` gets a container of its own; 0: never
 };
 
 struct Container {

@@ -203,12 +203,4 @@ void check_topic_settings(const Node& settings) {
     if (const Node* value = settings.optional(field.name)) field.set(scratch, *value);
 }
 
-std::string duration_text(Duration duration) {
-  if (duration == forever) return "none";
-  const double s = seconds(duration);
-  if (s != 0.0 && s < 1.0 && s >= 1e-3) return to_text(Value(s * 1e3)) + " ms";
-  if (s != 0.0 && s < 1e-3) return to_text(Value(s * 1e6)) + " us";
-  return to_text(Value(s)) + " s";
-}
-
 }  // namespace kervan::composition

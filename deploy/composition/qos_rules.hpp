@@ -59,7 +59,4 @@ EffectiveQos effective_qos(const TopicFacts& topic, const TopicEntry* entry, con
 /// Refuses unknown keys and wrong values of one entry of `topics:`.
 void check_topic_settings(const config::Node& settings);
 
-/// "400 ms", "1.5 s", "none" for forever.
-std::string duration_text(Duration duration);
-
 }  // namespace kervan::composition

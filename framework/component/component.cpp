@@ -105,7 +105,15 @@ dds::SampleBlock* OutputBase::loan_block(bool cleared) {
   return port_->loan(cleared);
 }
 
-void OutputBase::publish_block(dds::SampleBlock* block, bool dispose) { port_->publish(block, dispose); }
+void OutputBase::publish_block(dds::SampleBlock* block, bool dispose) {
+  using Operation = runtime::OutputPort::Operation;
+  port_->publish(block, dispose ? Operation::dispose : Operation::write);
+}
+
+void OutputBase::assert_alive() {
+  if (!port_) throw std::logic_error("output " + info_.name + " can be used in handlers, not in the constructor");
+  port_->assert_alive();
+}
 
 Timer::Timer(Component* owner, Duration period, std::function<void(Time)> handler)
     : period_(period), handler_(std::move(handler)) {

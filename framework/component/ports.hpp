@@ -1,7 +1,7 @@
 /// The members with which a component declares what it reads, what it writes and when it runs.
 ///
-///   Input<nav_msgs::msg::Odometry> odometry_{this, "odom", qos::sensor.max_age(500ms), "Pose and speed of base_link."};
-///   Input<kervan_msgs::msg::Goal> goals_{this, "goal", qos::event, &Planner::on_goal, "Where to go."};
+///   Input<nav_msgs::msg::Odometry> odometry_{this, "odom", qos::sensor.max_age(500ms), "Pose and speed of
+///   base_link."}; Input<kervan_msgs::msg::Goal> goals_{this, "goal", qos::event, &Planner::on_goal, "Where to go."};
 ///   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel", qos::command, "Speed wanted of base_link."};
 ///   Timer tick_{this, params_.period, &Planner::on_tick};
 #pragma once
@@ -29,8 +29,8 @@ namespace detail {
 const TypeSupport& require_layout(const TypeSupport& type, std::uint64_t compiled);
 }
 
-/// The TypeSupport of T out of its package's library. Throws std::runtime_error if that was built with another layout of
-/// T than the calling code: a process has one library of a name, whichever module brought it along.
+/// The TypeSupport of T out of its package's library. Throws std::runtime_error if that was built with another layout
+/// of T than the calling code: a process has one library of a name, whichever module brought it along.
 template <class T>
 const TypeSupport& shared_type_support() {
   return detail::require_layout(type_support<T>(), compiled_layout<T>);
@@ -141,6 +141,11 @@ class OutputBase {
 
   dds::SampleBlock* loan_block(bool cleared);
   void publish_block(dds::SampleBlock* block, bool dispose);
+
+ public:
+  /// For a topic with liveliness `manual`: says that the component is alive although it has nothing to publish.
+  /// Publishing says so too. From handlers.
+  void assert_alive();
 
  private:
   friend class Component;

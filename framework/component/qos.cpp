@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "framework/component/value.hpp"
+
 namespace kervan {
 
 using namespace std::chrono_literals;
@@ -31,5 +33,20 @@ std::string_view to_text(Durability durability) {
 }
 std::string_view to_text(Ownership ownership) { return ownership == Ownership::exclusive ? "exclusive" : "shared"; }
 std::string_view to_text(Network network) { return network == Network::async ? "async" : "sync"; }
+std::string_view to_text(Liveliness liveliness) { return liveliness == Liveliness::manual ? "manual" : "automatic"; }
+
+std::string duration_text(Duration duration) {
+  if (duration == forever) return "none";
+  const double s = seconds(duration);
+  if (s != 0.0 && s < 1.0 && s >= 1e-3) return to_text(Value(s * 1e3)) + " ms";
+  if (s != 0.0 && s < 1e-3) return to_text(Value(s * 1e6)) + " us";
+  return to_text(Value(s)) + " s";
+}
+
+std::string partition_text(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "[" : ", ") + name;
+  return text.empty() ? "none" : text + "]";
+}
 
 }  // namespace kervan

@@ -11,6 +11,7 @@
 #include <unordered_set>
 
 #include "framework/component/sample.hpp"
+#include "framework/dds/endpoint_qos.hpp"
 #include "framework/dds/sample_block.hpp"
 
 namespace kervan::dds {
@@ -18,6 +19,8 @@ namespace kervan::dds {
 bool is_disposed(const SampleBlock* block) noexcept {
   return (block->statusinfo & NN_STATUSINFO_DISPOSE) != 0 || block->kind != SDK_DATA;
 }
+
+bool is_assertion(const SampleBlock* block) noexcept { return (block->statusinfo & NN_STATUSINFO_OSPL_AUTO) != 0; }
 
 std::optional<WriterIdentity> parse_identity(std::string_view user_data) {
   unsigned index = 0;
@@ -33,32 +36,28 @@ struct QosDeleter {
 };
 using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-dds_duration_t to_dds(Duration duration) { return duration == forever ? DDS_INFINITY : duration.count(); }
-
-/// What reader and writer have in common.
-QosHandle endpoint_qos(const QosProfile& profile, CyclonePart part) {
-  QosHandle qos(dds_create_qos());
+/// Cyclone's form of what an endpoint offers or requests; `qos` is that of the whole profile.
+QosHandle cyclone_qos(const QosProfile& profile, EndpointQos qos, CyclonePart part) {
   const bool carrier = part == CyclonePart::carrier;
-  const bool reliable = carrier || profile.reliability == Reliability::reliable;
-  dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_INFINITY);
-  if (carrier || profile.depth == 0)
-    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
-  else
-    dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, profile.depth);
-  if (profile.durability == Durability::transient_local) {
-    // A late joiner gets what the durability service keeps, not what the writer's history keeps: set both.
-    dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
-    const bool keep_all = profile.depth == 0;
-    dds_qset_durability_service(qos.get(), 0, keep_all ? DDS_HISTORY_KEEP_ALL : DDS_HISTORY_KEEP_LAST,
-                                keep_all ? DDS_LENGTH_UNLIMITED : profile.depth, DDS_LENGTH_UNLIMITED,
-                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
-  } else {
-    dds_qset_durability(qos.get(), DDS_DURABILITY_VOLATILE);
+  if (carrier) {
+    qos.reliability = Reliability::reliable;
+    qos.deadline = qos.lease = forever;
+    qos.liveliness = LivelinessKind::automatic;
+    qos.ownership = Ownership::shared;
   }
-  const auto ownership =
-      !carrier && profile.ownership == Ownership::exclusive ? DDS_OWNERSHIP_EXCLUSIVE : DDS_OWNERSHIP_SHARED;
-  dds_qset_ownership(qos.get(), ownership);
-  return qos;
+  QosHandle handle(dds_create_qos());
+  set_endpoint_qos(handle.get(), qos);
+  // Keeping all, Cyclone would make a writer wait for a reader that was stopped; keeping very many, it never does.
+  const int depth = profile.depth > 0 ? profile.depth : profile.limit > 0 ? profile.limit : kMostKept;
+  if (carrier)
+    dds_qset_history(handle.get(), DDS_HISTORY_KEEP_ALL, DDS_LENGTH_UNLIMITED);
+  else
+    dds_qset_history(handle.get(), DDS_HISTORY_KEEP_LAST, depth);
+  // A late joiner gets what the durability service keeps, not what the writer's history keeps: set both.
+  if (profile.durability == Durability::transient_local)
+    dds_qset_durability_service(handle.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
+                                DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
+  return handle;
 }
 
 /// Kervan's reader history cache. Cyclone calls store() for each sample instead of keeping it, so there is one cache
@@ -150,15 +149,14 @@ static_assert(std::is_standard_layout_v<dds_rhc>);
 Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
                CyclonePart part, SampleSink& sink) {
   const Domain::Topic handle = domain.topic(topic, type);
-  const QosHandle qos = endpoint_qos(profile, part);
-  // Any budget a writer offers is good enough: it only says whether sending may wait for Cyclone's own thread. And no
-  // deadline is requested: the sample cache watches it, while asking for it would refuse every writer that offers none,
-  // which is nearly every ROS 2 driver.
-  dds_qset_latency_budget(qos.get(), DDS_INFINITY);
+  const QosHandle qos = cyclone_qos(profile, requested_qos(profile), part);
   auto* cache = new ReaderCache(reader_cache_operations(), sink);
   dds_listener_t* listener = dds_create_listener(&sink);
   dds_lset_subscription_matched(listener, [](dds_entity_t, dds_subscription_matched_status_t, void* to) {
     static_cast<SampleSink*>(to)->on_status();
+  });
+  dds_lset_liveliness_changed(listener, [](dds_entity_t, dds_liveliness_changed_status_t status, void* to) {
+    if (status.not_alive_count_change > 0) static_cast<SampleSink*>(to)->on_writer_lost(status.last_publication_handle);
   });
   dds_lset_requested_incompatible_qos(listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t, void* to) {
     static_cast<SampleSink*>(to)->on_status();
@@ -202,14 +200,10 @@ std::optional<WriterIdentity> Reader::matched_writer(std::uint64_t handle) const
 Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
                CyclonePart part, int strength, unsigned index)
     : topic_(domain.topic(topic, type)) {
-  const QosHandle qos = endpoint_qos(profile, part);
-  if (part == CyclonePart::whole_profile) {
-    dds_qset_lifespan(qos.get(), to_dds(profile.lifespan));
-    dds_qset_deadline(qos.get(), to_dds(profile.deadline));
-    if (profile.ownership == Ownership::exclusive) dds_qset_ownership_strength(qos.get(), strength);
-  }
-  // A budget above zero leaves sending to Cyclone's own thread, so local readers do not wait for the network.
-  dds_qset_latency_budget(qos.get(), profile.network == Network::async ? DDS_USECS(1) : 0);
+  const QosHandle qos = cyclone_qos(profile, offered_qos(profile), part);
+  if (part == CyclonePart::whole_profile && profile.lifespan != forever)
+    dds_qset_lifespan(qos.get(), profile.lifespan.count());
+  dds_qset_ownership_strength(qos.get(), strength);
   // Peers read our place in the composition and the layout we publish.
   char user_data[64];
   const int length = std::snprintf(user_data, sizeof user_data, "kw=%u;kl=%016llx;", index,
@@ -229,11 +223,22 @@ SampleBlock* Writer::loan(bool cleared) {
   return block;
 }
 
+void Writer::assert_alive() { dds_assert_liveliness(entity_); }
+
 void Writer::publish(SampleBlock* block, Time now, bool dispose) {
+  // The value goes along with the dispose: plain disposes of one instance merge, so they could not be counted.
+  send(block, now, dispose ? NN_STATUSINFO_DISPOSE : 0);
+}
+
+void Writer::publish_assertion(SampleBlock* block, Time now) {
+  // The only bit that Cyclone sends beside those of the standard; endpoints that are not ours see a sample.
+  send(block, now, NN_STATUSINFO_OSPL_AUTO);
+}
+
+void Writer::send(SampleBlock* block, Time now, std::uint32_t status) {
   block->received = now;
   block->timestamp.v = now.time_since_epoch().count();
-  // The value goes along with the dispose: plain disposes of one instance merge, so they could not be counted.
-  block->statusinfo = dispose ? NN_STATUSINFO_DISPOSE : 0;
+  block->statusinfo = status;
   seal(block);
   if (const dds_return_t code = dds_forwardcdr(entity_, block); code < 0)
     throw DdsError(std::string("publishing ") + topic_.type->support->name + " failed: " + dds_strretcode(-code));

@@ -15,6 +15,9 @@ namespace kervan::dds {
 
 struct SampleBlock;
 
+/// Whether it repeats its writer's last sample only to say that the writer is alive.
+bool is_assertion(const SampleBlock* block) noexcept;
+
 /// Whether Cyclone is asked for the whole profile or only carries samples. Under a logical clock it must only carry:
 /// reliable, everything kept, no time-based policies; history and times are then the sample cache's alone.
 enum class CyclonePart { whole_profile, carrier };
@@ -51,6 +54,8 @@ class SampleSink {
   virtual void on_sample(const Arrival& arrival) noexcept = 0;
   /// The writer is gone or no longer alive.
   virtual void on_writer_gone(std::uint64_t writer) noexcept = 0;
+  /// The writer was not alive for a whole lease; on_writer_gone() was called before.
+  virtual void on_writer_lost(std::uint64_t writer) noexcept { (void)writer; }
   /// A status of the reader changed.
   virtual void on_status() noexcept = 0;
 
@@ -92,11 +97,18 @@ class Writer {
   /// Publishes the block, which must be this writer's loan, and gives it up. Throws DdsError if Cyclone refuses it.
   void publish(SampleBlock* block, Time now, bool dispose);
 
+  /// Says to DDS that the writer is alive, without publishing anything.
+  void assert_alive();
+  /// Publishes the block as an assertion, for carriers, of which DDS does not watch the liveliness.
+  void publish_assertion(SampleBlock* block, Time now);
+
   /// Cyclone's instance handle, as readers see it in Arrival::writer.
   std::uint64_t handle() const { return handle_; }
   EndpointStatus status() const;
 
  private:
+  void send(SampleBlock* block, Time now, std::uint32_t status);
+
   Domain::Topic topic_;
   std::int32_t entity_ = 0;
   std::uint64_t handle_ = 0;

@@ -17,8 +17,8 @@ namespace {
 /// bound it would take all memory. Under lockstep nothing may depend on how fast anybody is, so everything is kept.
 std::size_t inbox_limit(ClockMode clock, const QosProfile& profile, bool keyed) {
   if (clock == ClockMode::lockstep) return std::numeric_limits<std::size_t>::max();
-  const auto depth = static_cast<std::size_t>(profile.depth);
-  return keyed || depth == 0 ? SampleCache::kMostKept : depth + 64;
+  if (profile.limit > 0) return static_cast<std::size_t>(profile.limit);
+  return static_cast<std::size_t>(keyed || profile.depth == 0 ? kMostKept : profile.depth + 64);
 }
 
 dds::CyclonePart part_of(ClockMode clock) {
@@ -34,7 +34,8 @@ InputPort::InputPort(InputBase& input, const PortBinding& binding, ComponentInst
       owner_(owner),
       clock_(clock),
       inbox_limit_(inbox_limit(clock, binding.profile, input.type().keyed)),
-      cache_(binding.profile, input.info().qos.max_age(), input.type().keyed, static_cast<bool>(input.deliver_)) {
+      cache_(binding.profile, input.info().qos.max_age(), input.type().keyed, static_cast<bool>(input.deliver_),
+             clock != ClockMode::wall) {
   reader_ = std::make_unique<dds::Reader>(domain, binding.topic, input.type(), binding.profile, part_of(clock), *this);
   input.port_ = this;
 }
@@ -50,6 +51,13 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
   dds::retain(arrival.block);
   dds::SampleBlock* overflow = nullptr;
   lock();
+  if (inbox_.size() - inbox_first_ >= inbox_limit_ && binding_.profile.limit > 0) {
+    // The profile says that what waits already counts more than what comes.
+    ++overflowed_;
+    unlock();
+    dds::release(arrival.block);
+    return;
+  }
   if (inbox_.size() - inbox_first_ >= inbox_limit_) {
     overflow = inbox_[inbox_first_++].block;
     ++overflowed_;
@@ -72,10 +80,17 @@ void InputPort::on_writer_gone(std::uint64_t writer) noexcept {
   if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
 }
 
+void InputPort::on_writer_lost(std::uint64_t writer) noexcept {
+  lock();
+  lost_.push_back(writer);
+  unlock();
+  if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
+}
+
 PortCounters InputPort::counters() const {
   PortCounters counters = cache_.counters();
   lock();
-  counters.refused = overflowed_;
+  counters.refused += overflowed_;
   unlock();
   return counters;
 }
@@ -85,9 +100,11 @@ void InputPort::stage(Time now) {
   arrived_.swap(inbox_);
   const std::size_t first = std::exchange(inbox_first_, 0);
   const std::vector<std::uint64_t> gone = std::exchange(gone_, {});
+  const std::vector<std::uint64_t> lost = std::exchange(lost_, {});
   unlock();
   const bool ordered = clock_ == ClockMode::lockstep;
-  const bool needs_writers = ordered || binding_.profile.ownership == Ownership::exclusive;
+  const bool needs_writers = ordered || binding_.profile.ownership == Ownership::exclusive ||
+                             binding_.profile.liveliness == Liveliness::manual;
   staged_.clear();
   for (std::size_t i = first; i < arrived_.size(); ++i) {
     const dds::Arrival& arrival = arrived_[i];
@@ -102,6 +119,7 @@ void InputPort::stage(Time now) {
                      [](const StagedSample& a, const StagedSample& b) { return a.writer < b.writer; });
   cache_.stage(staged_);
   for (const std::uint64_t writer : gone) cache_.writer_gone(owner_.container().writer_index(*this, writer));
+  for (const std::uint64_t writer : lost) cache_.writer_lost(owner_.container().writer_index(*this, writer));
 }
 
 void InputPort::deliver(Time now) {
@@ -146,14 +164,29 @@ OutputPort::OutputPort(OutputBase& output, const PortBinding& binding, Component
       owner_(owner),
       index_(index),
       traced_(clock == ClockMode::lockstep && binding.profile.trace && output.info().qos.traced()),
+      keeps_last_(clock != ClockMode::wall && binding.profile.liveliness == Liveliness::manual),
       writer_(domain, binding.topic, output.type(), binding.profile, part_of(clock), output.info().qos.strength(),
               index) {
   output.port_ = this;
 }
 
-OutputPort::~OutputPort() { output_.port_ = nullptr; }
+OutputPort::~OutputPort() {
+  output_.port_ = nullptr;
+  if (last_) dds::release(last_);
+}
 
-void OutputPort::publish(dds::SampleBlock* block, bool dispose) {
+void OutputPort::assert_alive() {
+  if (!keeps_last_) {
+    writer_.assert_alive();
+    return;
+  }
+  if (!last_) return;  // nobody has heard of this writer, so nobody can miss it
+  dds::SampleBlock* repeated = writer_.loan(false);
+  type().copy(dds::mutable_value_of(repeated), dds::value_of(last_));
+  publish(repeated, Operation::assertion);
+}
+
+void OutputPort::publish(dds::SampleBlock* block, Operation operation) {
   const Instant& at = owner_.instant();
   // A handler may have run for long when it publishes, and age counts from here.
   const Time stamp = owner_.container().spec().clock == ClockMode::wall ? dds::wall_now() : at.time;
@@ -163,11 +196,20 @@ void OutputPort::publish(dds::SampleBlock* block, bool dispose) {
     hash.number(at.time.time_since_epoch().count());
     hash.number(at.cycle);
     hash.number(sequence_);
-    hash.number(dispose);
+    hash.number(static_cast<int>(operation));
     output_.type().hash(dds::value_of(block), hash);
     trace_ = hash.value();
   }
-  writer_.publish(block, stamp, dispose);
+  if (operation == Operation::assertion) {
+    writer_.publish_assertion(block, stamp);
+    return;
+  }
+  if (keeps_last_) {
+    if (last_) dds::release(last_);
+    last_ = operation == Operation::write ? block : nullptr;
+    if (last_) dds::retain(last_);
+  }
+  writer_.publish(block, stamp, operation == Operation::dispose);
 }
 
 }  // namespace kervan::runtime

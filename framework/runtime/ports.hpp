@@ -52,6 +52,7 @@ class InputPort final : public dds::SampleSink {
 
   void on_sample(const dds::Arrival& arrival) noexcept override;
   void on_writer_gone(std::uint64_t writer) noexcept override;
+  void on_writer_lost(std::uint64_t writer) noexcept override;
   void on_status() noexcept override {}
 
  private:
@@ -68,15 +69,16 @@ class InputPort final : public dds::SampleSink {
   std::size_t inbox_limit_;
   SampleCache cache_;
   mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
-  std::vector<dds::Arrival> inbox_;        ///< under spin_, from inbox_first_ on; its blocks are retained
-  std::size_t inbox_first_ = 0;            ///< under spin_: what stood before it was dropped
-  std::vector<std::uint64_t> gone_;        ///< under spin_: writers that left
-  std::uint64_t overflowed_ = 0;           ///< under spin_: dropped because the component did not run
-  std::vector<dds::Arrival> arrived_;      ///< scratch of stage(), swapped with inbox_
-  std::vector<StagedSample> staged_;       ///< scratch of stage()
-  std::vector<dds::SampleBlock*> given_;   ///< taken by the component, kept alive until it takes again
+  std::vector<dds::Arrival> inbox_;       ///< under spin_, from inbox_first_ on; its blocks are retained
+  std::size_t inbox_first_ = 0;           ///< under spin_: what stood before it was dropped
+  std::vector<std::uint64_t> gone_;       ///< under spin_: writers that left
+  std::vector<std::uint64_t> lost_;       ///< under spin_: writers that were not alive for a lease
+  std::uint64_t overflowed_ = 0;          ///< under spin_: dropped because the component did not run
+  std::vector<dds::Arrival> arrived_;     ///< scratch of stage(), swapped with inbox_
+  std::vector<StagedSample> staged_;      ///< scratch of stage()
+  std::vector<dds::SampleBlock*> given_;  ///< taken by the component, kept alive until it takes again
   std::atomic<bool> ready_{false};
-  std::unique_ptr<dds::Reader> reader_;    ///< last: it calls into the members above
+  std::unique_ptr<dds::Reader> reader_;  ///< last: it calls into the members above
 
   friend class ComponentInstance;
 };
@@ -97,7 +99,10 @@ class OutputPort {
   std::uint64_t trace() const { return trace_; }
 
   dds::SampleBlock* loan(bool cleared) { return writer_.loan(cleared); }
-  void publish(dds::SampleBlock* block, bool dispose);
+  enum class Operation { write, dispose, assertion };
+  void publish(dds::SampleBlock* block, Operation operation);
+  /// Under a logical clock, where DDS knows no lease, it travels as a repetition of the last sample.
+  void assert_alive();
 
  private:
   OutputBase& output_;
@@ -107,6 +112,8 @@ class OutputPort {
   bool traced_;
   std::uint64_t sequence_ = 0;
   std::uint64_t trace_ = 0;
+  dds::SampleBlock* last_ = nullptr;  ///< published last, if an assertion has to repeat it
+  bool keeps_last_;
   dds::Writer writer_;
 };
 

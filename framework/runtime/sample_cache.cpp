@@ -1,9 +1,11 @@
 #include "framework/runtime/sample_cache.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "framework/component/sample.hpp"
+#include "framework/dds/endpoint.hpp"
 
 namespace kervan::runtime {
 
@@ -11,11 +13,15 @@ namespace {
 Time later(Time t, Duration d) { return d == forever ? Time::max() : t + d; }
 }  // namespace
 
-SampleCache::SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued)
+SampleCache::SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued, bool watch_lease)
     : profile_(profile),
       max_age_(max_age),
       keyed_(keyed),
-      most_kept_(profile.depth > 0 ? static_cast<std::size_t>(profile.depth) : kMostKept),
+      most_kept_(static_cast<std::size_t>(profile.depth > 0   ? profile.depth
+                                          : profile.limit > 0 ? profile.limit
+                                                              : kMostKept)),
+      limit_(profile.limit > 0 ? static_cast<std::size_t>(profile.limit) : std::numeric_limits<std::size_t>::max()),
+      watch_lease_(watch_lease && profile.liveliness == Liveliness::manual && profile.lease != forever),
       queued_(queued) {}
 
 SampleCache::~SampleCache() {
@@ -50,14 +56,24 @@ void SampleCache::forget_disposed() {
 
 bool SampleCache::owns(Instance& instance, const StagedSample& sample) {
   if (profile_.ownership == Ownership::shared) return true;
-  const bool takes_over = !instance.owned || sample.writer == instance.owner ||
-                          sample.strength > instance.strength ||
+  const bool takes_over = !instance.owned || sample.writer == instance.owner || sample.strength > instance.strength ||
                           (sample.strength == instance.strength && sample.writer < instance.owner);
   if (!takes_over) return false;
   instance.owned = true;
   instance.owner = sample.writer;
   instance.strength = sample.strength;
   return true;
+}
+
+void SampleCache::renew_lease(const StagedSample& sample) {
+  if (!watch_lease_) return;
+  const Time due = later(sample.received, profile_.lease);
+  for (Lease& lease : leases_) {
+    if (lease.writer != sample.writer) continue;
+    lease.due = due;
+    return;
+  }
+  leases_.push_back({sample.writer, due});
 }
 
 void SampleCache::drop_oldest_fresh(Instance& instance) {
@@ -79,10 +95,22 @@ void SampleCache::drop_oldest_fresh(Instance& instance) {
 
 void SampleCache::stage(const std::vector<StagedSample>& samples) {
   for (const StagedSample& sample : samples) {
-    ++counters_.received;
+    renew_lease(sample);
     Instance& target = instance(sample.instance);
+    // An assertion repeats its writer's last sample, which is news to nobody but a late joiner.
+    const bool late_joiner = !target.newest && profile_.durability == Durability::transient_local;
+    if (dds::is_assertion(sample.block) && !late_joiner) {
+      dds::release(sample.block);
+      continue;
+    }
+    ++counters_.received;
     if (!owns(target, sample)) {
       ++counters_.not_owner;
+      dds::release(sample.block);
+      continue;
+    }
+    if (queued_ && live_fresh_ >= limit_) {
+      ++counters_.refused;
       dds::release(sample.block);
       continue;
     }
@@ -159,13 +187,24 @@ std::vector<dds::SampleBlock*> SampleCache::instances(Time now) const {
   return alive;
 }
 
-void SampleCache::writer_gone(unsigned writer) {
+void SampleCache::free_instances(unsigned owner) {
   for (Instance& instance : instances_)
-    if (instance.owned && instance.owner == writer) instance.owned = false;
+    if (instance.owned && instance.owner == owner) instance.owned = false;
+}
+
+void SampleCache::writer_gone(unsigned writer) {
+  free_instances(writer);
+  std::erase_if(leases_, [&](const Lease& lease) { return lease.writer == writer; });
+}
+
+void SampleCache::writer_lost(unsigned writer) {
+  ++counters_.liveliness_lost;
+  free_instances(writer);
 }
 
 Time SampleCache::next_deadline() const {
   Time next = Time::max();
+  for (const Lease& lease : leases_) next = std::min(next, lease.due);
   if (profile_.deadline == forever) return next;
   for (const Instance& instance : instances_) next = std::min(next, instance.due);
   return next;
@@ -173,6 +212,12 @@ Time SampleCache::next_deadline() const {
 
 bool SampleCache::check_deadlines(Time now) {
   bool missed = false;
+  for (Lease& lease : leases_) {
+    if (lease.due > now) continue;
+    lease.due = Time::max();
+    writer_lost(lease.writer);
+    missed = true;
+  }
   if (profile_.deadline == forever) return missed;
   for (Instance& instance : instances_) {
     while (instance.due <= now) {

@@ -1,5 +1,6 @@
-/// The one implementation of history, lifespan, deadline, max age and ownership: what an input port keeps of the samples
-/// that reached it. Times are on the composition's clock and always passed in. Not thread-safe: the component's thread.
+/// The one implementation of history, limit, lifespan, deadline, max age, ownership and manual lease: what an input
+/// port keeps of the samples that reached it. Times are on the composition's clock and always passed in. Not
+/// thread-safe: the component's thread.
 #pragma once
 
 #include <cstdint>
@@ -30,27 +31,26 @@ struct PortCounters {
   std::uint64_t handled = 0;          ///< given to the component
   std::uint64_t overwritten = 0;      ///< pushed out by newer ones before the component took them
   std::uint64_t expired = 0;          ///< past their lifespan before the component took them
-  std::uint64_t refused = 0;          ///< dropped because the component did not run and its inbox was full
+  std::uint64_t refused = 0;          ///< not taken in: the profile's limit was reached, or the inbox was full
   std::uint64_t not_owner = 0;        ///< from a writer that did not own the instance
   std::uint64_t deadline_missed = 0;  ///< periods of the deadline without a sample
+  std::uint64_t liveliness_lost = 0;  ///< times that a writer was not alive for a whole lease
 };
 
 class SampleCache {
  public:
-  /// What "keep all" keeps of an instance that nobody takes samples of: a bound is needed, or memory runs out.
-  static constexpr std::size_t kMostKept = 10'000;
-
-  /// `queued`: each sample is waited for; otherwise that is assumed from the first take() on.
-  SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued = false);
+  /// `queued`: each sample is waited for; otherwise that is assumed from the first take() on. `watch_lease`: a manual
+  /// lease runs here, from sample to sample; else writer_lost() says that it is over.
+  SampleCache(const QosProfile& profile, Duration max_age, bool keyed, bool queued = false, bool watch_lease = false);
   SampleCache(const SampleCache&) = delete;
   SampleCache& operator=(const SampleCache&) = delete;
   ~SampleCache();
 
-  /// Takes the samples over, in this order: ownership first, then history depth per instance.
+  /// Takes the samples over, in this order: ownership first, then the limit, then history depth per instance.
   void stage(const std::vector<StagedSample>& samples);
 
-  /// The oldest sample that was not yet given out and is not past its lifespan; nullptr if none is left. The caller gets
-  /// the reference.
+  /// The oldest sample that was not yet given out and is not past its lifespan; nullptr if none is left. The caller
+  /// gets the reference.
   dds::SampleBlock* take(Time now);
   bool has_fresh() const { return live_fresh_ > 0; }
 
@@ -64,11 +64,14 @@ class SampleCache {
   /// Instances that take up memory, those disposed of a moment ago included.
   std::size_t remembered_instances() const { return instances_.size(); }
 
+  /// The writer ended: what it owned is free, and no lease of it runs any more.
   void writer_gone(unsigned writer);
+  /// The writer was not alive for a whole lease: what it owned is free until it is heard of again.
+  void writer_lost(unsigned writer);
 
-  /// The earliest time at which an instance misses the deadline; Time::max() without one.
+  /// The earliest time at which an instance misses the deadline or a lease ends; Time::max() if there is none.
   Time next_deadline() const;
-  /// Counts the deadlines missed at or before `now`; true if there was one.
+  /// Counts the deadlines missed and leases ended at or before `now`; true if there was one.
   bool check_deadlines(Time now);
 
   const PortCounters& counters() const { return counters_; }
@@ -83,8 +86,12 @@ class SampleCache {
     bool owned = false;
     unsigned owner = 0;
     std::int32_t strength = 0;
-    int fresh = 0;         ///< samples of it in fresh_
+    int fresh = 0;          ///< samples of it in fresh_
     bool disposed = false;  ///< forgotten once nothing of it is left in fresh_
+  };
+  struct Lease {
+    unsigned writer;
+    Time due;
   };
   struct Fresh {
     dds::SampleBlock* block = nullptr;  ///< nullptr once given out or overwritten
@@ -95,6 +102,8 @@ class SampleCache {
   Instance& instance(std::uint64_t id);
   void forget_disposed();
   bool owns(Instance& instance, const StagedSample& sample);
+  void renew_lease(const StagedSample& sample);
+  void free_instances(unsigned owner);
   void drop_oldest_fresh(Instance& instance);
   bool too_old(Time received, Time now) const;
 
@@ -102,14 +111,17 @@ class SampleCache {
   Duration max_age_;
   bool keyed_;
   std::size_t most_kept_;  ///< of each instance
-  std::vector<Instance> instances_;                     ///< in order of first appearance
+  std::size_t limit_;      ///< of all instances together
+  bool watch_lease_;
+  std::vector<Lease> leases_;                             ///< of the writers heard of, while watched here
+  std::vector<Instance> instances_;                       ///< in order of first appearance
   std::unordered_map<std::uint64_t, std::size_t> index_;  ///< of keyed topics: id -> place in instances_
-  std::size_t disposed_ = 0;                            ///< disposed instances that may be forgotten
-  std::vector<Fresh> fresh_;  ///< those not yet given out, from next_fresh_ on
+  std::size_t disposed_ = 0;                              ///< disposed instances that may be forgotten
+  std::vector<Fresh> fresh_;                              ///< those not yet given out, from next_fresh_ on
   std::size_t next_fresh_ = 0;
   std::size_t live_fresh_ = 0;  ///< blocks in fresh_
   bool queued_;                 ///< somebody takes; a port that only looks at the newest loses nothing
-  std::size_t newest_ = 0;  ///< place of the instance that got the newest sample
+  std::size_t newest_ = 0;      ///< place of the instance that got the newest sample
   PortCounters counters_;
 };
 

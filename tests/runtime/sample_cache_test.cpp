@@ -22,8 +22,9 @@ constexpr Time at(Duration t) { return Time(t); }
 class SampleCacheTest : public ::testing::Test {
  protected:
   kervan::dds::Domain domain_{{.id = 204, .network = false}};
-  kervan::dds::Writer writer_{domain_, "/requests", kervan::type_support<MotionRequest>(), QosProfile{},
-                              kervan::dds::CyclonePart::carrier, 0, 0};
+  kervan::dds::Writer writer_{
+      domain_, "/requests", kervan::type_support<MotionRequest>(), QosProfile{}, kervan::dds::CyclonePart::carrier, 0,
+      0};
 
   StagedSample sample(int number, Duration received, std::uint64_t instance = 1, unsigned writer = 0,
                       std::int32_t strength = 0) {
@@ -110,6 +111,61 @@ TEST_F(SampleCacheTest, TheStrongestWriterOwnsAnInstanceUntilItGoesOrMissesItsDe
   cache.check_deadlines(at(120ms));
   cache.stage({sample(6, 121ms, 1, 0, 5)});
   EXPECT_EQ(take_all(cache, 121ms), (std::vector{5, 6}));
+}
+
+TEST_F(SampleCacheTest, BeyondTheLimitTheNewestIsRefusedAndCounted) {
+  SampleCache cache({.depth = 0, .limit = 3}, kervan::forever, true, true);
+  cache.stage({sample(1, 0s, 1), sample(2, 0s, 2), sample(3, 0s, 1), sample(4, 0s, 1), sample(5, 0s, 3)});
+  EXPECT_EQ(take_all(cache, 0s), (std::vector{1, 2, 3}));
+  EXPECT_EQ(cache.counters().refused, 2u);
+  cache.stage({sample(6, 1s, 1)});
+  EXPECT_EQ(take_all(cache, 1s), (std::vector{6}));
+  EXPECT_EQ(cache.counters().handled, 4u);
+}
+
+TEST_F(SampleCacheTest, APortThatOnlyLooksAtTheNewestGetsItWhateverTheLimit) {
+  SampleCache cache({.depth = 0, .limit = 3}, kervan::forever, false);
+  for (int i = 0; i < 10; ++i) cache.stage({sample(i, 0s)});
+  EXPECT_EQ(number(cache.latest(at(0s))), 9);
+  EXPECT_EQ(cache.counters().refused, 0u);
+}
+
+TEST_F(SampleCacheTest, AWriterThatIsSilentForALeaseIsLostUntilItIsHeardOfAgain) {
+  SampleCache cache({.depth = 10,
+                     .liveliness = kervan::Liveliness::manual,
+                     .lease = 100ms,
+                     .ownership = kervan::Ownership::exclusive},
+                    kervan::forever, false, true, true);
+  EXPECT_EQ(cache.next_deadline(), Time::max());
+  cache.stage({sample(1, 0ms, 1, 4, 9), sample(2, 20ms, 1, 7, 5)});
+  EXPECT_EQ(cache.next_deadline(), at(100ms));
+  EXPECT_FALSE(cache.check_deadlines(at(99ms)));
+  EXPECT_TRUE(cache.check_deadlines(at(100ms)));
+  EXPECT_EQ(cache.counters().liveliness_lost, 1u);
+  EXPECT_EQ(cache.next_deadline(), at(120ms));
+  cache.stage({sample(3, 110ms, 1, 7, 5)});  // the weaker one takes over
+  cache.stage({sample(4, 130ms, 1, 4, 9)});  // the stronger one is back
+  EXPECT_EQ(take_all(cache, 130ms), (std::vector{1, 3, 4}));
+  EXPECT_EQ(cache.next_deadline(), at(210ms));
+  EXPECT_TRUE(cache.check_deadlines(at(1s)));
+  EXPECT_EQ(cache.counters().liveliness_lost, 3u);
+  EXPECT_FALSE(cache.check_deadlines(at(2s))) << "a lost writer is counted once";
+}
+
+TEST_F(SampleCacheTest, AWriterThatEndedIsNotMissed) {
+  SampleCache cache({.liveliness = kervan::Liveliness::manual, .lease = 100ms}, kervan::forever, false, true, true);
+  cache.stage({sample(1, 0ms, 1, 4)});
+  cache.writer_gone(4);
+  EXPECT_FALSE(cache.check_deadlines(at(1s)));
+  EXPECT_EQ(cache.counters().liveliness_lost, 0u);
+}
+
+TEST_F(SampleCacheTest, LeavesTheLeaseToWhoeverElseWatchesIt) {
+  SampleCache cache({.liveliness = kervan::Liveliness::manual, .lease = 100ms}, kervan::forever, false, true);
+  cache.stage({sample(1, 0ms, 1, 4)});
+  EXPECT_EQ(cache.next_deadline(), Time::max());
+  cache.writer_lost(4);
+  EXPECT_EQ(cache.counters().liveliness_lost, 1u);
 }
 
 TEST_F(SampleCacheTest, InstancesStandInTheOrderOfTheirFirstSample) {
