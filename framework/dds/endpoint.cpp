@@ -22,14 +22,57 @@ bool is_disposed(const SampleBlock* block) noexcept {
 
 bool is_assertion(const SampleBlock* block) noexcept { return (block->statusinfo & NN_STATUSINFO_OSPL_AUTO) != 0; }
 
-std::optional<WriterIdentity> parse_identity(std::string_view user_data) {
+namespace {
+
+/// Peers read an endpoint's place in the composition and the layout of its type; `kind` is 'w' or 'r'.
+void set_identity(dds_qos_t* qos, char kind, unsigned index, const TypeSupport& type) {
+  char text[64];
+  const int length = std::snprintf(text, sizeof text, "k%c=%u;kl=%016llx;", kind, index,
+                                   static_cast<unsigned long long>(type.layout_hash));
+  dds_qset_userdata(qos, text, static_cast<std::size_t>(length));
+}
+
+}  // namespace
+
+std::optional<EndpointIdentity> parse_identity(std::string_view user_data) {
   unsigned index = 0;
   unsigned long long layout = 0;
-  if (std::sscanf(std::string(user_data).c_str(), "kw=%u;kl=%llx;", &index, &layout) != 2) return std::nullopt;
-  return WriterIdentity{index, layout};
+  char role = 0;
+  if (std::sscanf(std::string(user_data).c_str(), "k%c=%u;kl=%llx;", &role, &index, &layout) != 3) return std::nullopt;
+  if (role != 'w' && role != 'r') return std::nullopt;
+  return EndpointIdentity{index, layout};
 }
 
 namespace {
+
+/// Frees the description that Cyclone gave of a matched endpoint.
+std::optional<EndpointIdentity> identity_of(dds_builtintopic_endpoint_t* endpoint) {
+  if (!endpoint) return std::nullopt;
+  std::optional<EndpointIdentity> identity;
+  void* data = nullptr;
+  std::size_t size = 0;
+  if (dds_qget_userdata(endpoint->qos, &data, &size) && data)
+    identity = parse_identity({static_cast<const char*>(data), size});
+  dds_free(data);
+  dds_builtintopic_free_endpoint(endpoint);
+  return identity;
+}
+
+using ListPeers = dds_return_t (*)(dds_entity_t, dds_instance_handle_t*, std::size_t);
+using DescribePeer = dds_builtintopic_endpoint_t* (*)(dds_entity_t, dds_instance_handle_t);
+
+std::vector<MatchedPeer> matched_peers(dds_entity_t endpoint, ListPeers list, DescribePeer describe) {
+  std::vector<dds_instance_handle_t> handles(16);
+  dds_return_t count = 0;
+  while ((count = list(endpoint, handles.data(), handles.size())) > static_cast<dds_return_t>(handles.size()))
+    handles.resize(static_cast<std::size_t>(count));
+  std::vector<MatchedPeer> peers;
+  for (dds_return_t i = 0; i < count; ++i) {
+    const dds_instance_handle_t handle = handles[static_cast<std::size_t>(i)];
+    peers.push_back({handle, identity_of(describe(endpoint, handle))});
+  }
+  return peers;
+}
 
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
@@ -44,6 +87,7 @@ QosHandle cyclone_qos(const QosProfile& profile, EndpointQos qos, CyclonePart pa
     qos.deadline = qos.lease = forever;
     qos.liveliness = LivelinessKind::automatic;
     qos.ownership = Ownership::shared;
+    qos.latency_budget = Duration::zero();  // the next cycle waits for the sample, so nobody gains by sending it later
   }
   QosHandle handle(dds_create_qos());
   set_endpoint_qos(handle.get(), qos);
@@ -147,9 +191,10 @@ static_assert(std::is_standard_layout_v<dds_rhc>);
 }  // namespace
 
 Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
-               CyclonePart part, SampleSink& sink) {
+               CyclonePart part, SampleSink& sink, unsigned index) {
   const Domain::Topic handle = domain.topic(topic, type);
   const QosHandle qos = cyclone_qos(profile, requested_qos(profile), part);
+  set_identity(qos.get(), 'r', index, type);
   auto* cache = new ReaderCache(reader_cache_operations(), sink);
   dds_listener_t* listener = dds_create_listener(&sink);
   dds_lset_subscription_matched(listener, [](dds_entity_t, dds_subscription_matched_status_t, void* to) {
@@ -184,17 +229,12 @@ EndpointStatus Reader::status() const {
   return status;
 }
 
-std::optional<WriterIdentity> Reader::matched_writer(std::uint64_t handle) const {
-  dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(entity_, handle);
-  if (!endpoint) return std::nullopt;
-  std::optional<WriterIdentity> identity;
-  void* data = nullptr;
-  std::size_t size = 0;
-  if (dds_qget_userdata(endpoint->qos, &data, &size) && data)
-    identity = parse_identity({static_cast<const char*>(data), size});
-  dds_free(data);
-  dds_builtintopic_free_endpoint(endpoint);
-  return identity;
+std::optional<EndpointIdentity> Reader::matched_writer(std::uint64_t handle) const {
+  return identity_of(dds_get_matched_publication_data(entity_, handle));
+}
+
+std::vector<MatchedPeer> Reader::matched_writers() const {
+  return matched_peers(entity_, dds_get_matched_publications, dds_get_matched_publication_data);
 }
 
 Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
@@ -204,11 +244,7 @@ Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type
   if (part == CyclonePart::whole_profile && profile.lifespan != forever)
     dds_qset_lifespan(qos.get(), profile.lifespan.count());
   dds_qset_ownership_strength(qos.get(), strength);
-  // Peers read our place in the composition and the layout we publish.
-  char user_data[64];
-  const int length = std::snprintf(user_data, sizeof user_data, "kw=%u;kl=%016llx;", index,
-                                   static_cast<unsigned long long>(type.layout_hash));
-  dds_qset_userdata(qos.get(), user_data, static_cast<std::size_t>(length));
+  set_identity(qos.get(), 'w', index, type);
   entity_ = dds_create_writer(domain.participant(), topic_.entity, qos.get(), nullptr);
   if (entity_ < 0)
     throw DdsError("cannot create a writer of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));
@@ -257,6 +293,10 @@ EndpointStatus Writer::status() const {
     status.last_incompatible_id = incompatible.last_policy_id;
   }
   return status;
+}
+
+std::vector<MatchedPeer> Writer::matched_readers() const {
+  return matched_peers(entity_, dds_get_matched_subscriptions, dds_get_matched_subscription_data);
 }
 
 }  // namespace kervan::dds

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "framework/component/qos.hpp"
 #include "framework/dds/domain.hpp"
@@ -30,14 +31,26 @@ struct EndpointStatus {
   std::uint32_t last_incompatible_id = 0;  ///< DDS policy id of the last refusal
 };
 
-/// What one of our writers says of itself to every peer.
-struct WriterIdentity {
-  unsigned index = 0;             ///< its place in the composition
-  std::uint64_t layout_hash = 0;  ///< of the type it publishes
+/// The index of an endpoint that has no place in a composition: the framework's own, and a test's.
+inline constexpr unsigned kInternal = ~0u;
+
+/// What one of our endpoints says of itself to every peer. Writers are counted through a composition, and so are
+/// readers.
+struct EndpointIdentity {
+  unsigned index = kInternal;     ///< its place among the composition's writers, or among its readers
+  std::uint64_t layout_hash = 0;  ///< of its type
+
+  bool operator==(const EndpointIdentity&) const = default;
 };
 
-/// Reads what a writer's user data says; nothing if it is none of ours.
-std::optional<WriterIdentity> parse_identity(std::string_view user_data);
+/// Reads what an endpoint's user data says; nothing if it is none of ours.
+std::optional<EndpointIdentity> parse_identity(std::string_view user_data);
+
+/// A peer that an endpoint is matched with now, in this process or elsewhere.
+struct MatchedPeer {
+  std::uint64_t handle = 0;                  ///< Cyclone's instance handle; of a writer as in Arrival::writer
+  std::optional<EndpointIdentity> identity;  ///< nothing if it is none of ours
+};
 
 /// What travels with a block from its writer to a reader of it.
 struct Arrival {
@@ -65,9 +78,10 @@ class SampleSink {
 
 class Reader {
  public:
-  /// `sink` must outlive the reader. Throws DdsError.
+  /// `sink` must outlive the reader. `index` is the reader's place in the composition, the same everywhere. Throws
+  /// DdsError.
   Reader(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile, CyclonePart part,
-         SampleSink& sink);
+         SampleSink& sink, unsigned index = kInternal);
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
   /// After this no call into the sink is under way or will come.
@@ -76,7 +90,9 @@ class Reader {
   EndpointStatus status() const;
 
   /// Who a writer is that is matched now; nothing if it is not, or none of ours. Not from a SampleSink's call.
-  std::optional<WriterIdentity> matched_writer(std::uint64_t handle) const;
+  std::optional<EndpointIdentity> matched_writer(std::uint64_t handle) const;
+  /// All writers that are matched now. Not from a SampleSink's call.
+  std::vector<MatchedPeer> matched_writers() const;
 
  private:
   std::int32_t entity_ = 0;
@@ -105,6 +121,8 @@ class Writer {
   /// Cyclone's instance handle, as readers see it in Arrival::writer.
   std::uint64_t handle() const { return handle_; }
   EndpointStatus status() const;
+  /// All readers that are matched now. Not from a SampleSink's call.
+  std::vector<MatchedPeer> matched_readers() const;
 
  private:
   void send(SampleBlock* block, Time now, std::uint32_t status);

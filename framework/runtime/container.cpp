@@ -7,16 +7,13 @@
 #include "framework/dds/hash.hpp"
 #include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/dispatcher.hpp"
+#include "framework/runtime/lockstep.hpp"
 #include "framework/runtime/log.hpp"
 #include "framework/runtime/status.hpp"
-#include "framework/runtime/workers.hpp"
 
 namespace kervan::runtime {
 
 namespace {
-
-/// More cycles than this at one time mean that ports publish to each other for ever.
-constexpr unsigned kMaxCycles = 1000;
 
 constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);
 
@@ -38,27 +35,28 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(st
   log_sinks_ =
       std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder, spec_.publish_log ? domain_.get() : nullptr);
   status_writer_ = std::make_unique<StatusWriter>(*domain_);
-  // A writer's index counts the outputs of all components before it, wherever they run.
-  unsigned first_writer = 0;
+  if (spec_.clock == ClockMode::lockstep) lockstep_ = std::make_unique<Lockstep>(*this, instant_, spec_.threads);
+  // An endpoint's index counts those of all components before it, wherever they run.
+  FirstIndices first;
   for (unsigned index = 0; index < spec_.components.size(); ++index) {
     const ComponentSpec& component = spec_.components[index];
     if (!is_local(spec_, component)) {
-      first_writer +=
-          static_cast<unsigned>(std::ranges::count(component.ports, PortDirection::output, &PortBinding::direction));
+      for (const PortBinding& port : component.ports)
+        ++(port.direction == PortDirection::output ? first.writer : first.reader);
       continue;
     }
     const ComponentClass* type = registry.find(component.type);
     if (!type) throw ConfigError({}, "there is no component type '" + component.type + "'");
     try {
-      instances_.push_back(std::make_unique<ComponentInstance>(*this, component, *type, index, first_writer));
+      instances_.push_back(std::make_unique<ComponentInstance>(*this, component, *type, index, first));
     } catch (const ParameterError& error) {
       throw ParameterError(component.name + "." + error.parameter(), error.message());
     }
     for (const auto& output : instances_.back()->outputs())
       writer_indices_.emplace(output->writer().handle(), output->index());
-    first_writer += static_cast<unsigned>(instances_.back()->outputs().size());
+    first.writer += static_cast<unsigned>(instances_.back()->outputs().size());
+    first.reader += static_cast<unsigned>(instances_.back()->inputs().size());
   }
-  if (spec_.clock == ClockMode::lockstep && spec_.threads > 1) workers_ = std::make_unique<WorkerPool>(spec_.threads);
 }
 
 Container::~Container() {
@@ -90,11 +88,7 @@ void Container::input_ready(InputPort& port) noexcept {
     instance.notify();
     return;
   }
-  if (instance.schedule.exchange(1, std::memory_order_acq_rel) != 0) return;
-  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
-  }
-  ready_.push_back(&instance);
-  ready_spin_.clear(std::memory_order_release);
+  lockstep_->arrived(instance);
 }
 
 void Container::request_finish(unsigned component, std::string why) {
@@ -105,17 +99,18 @@ void Container::request_finish(unsigned component, std::string why) {
   finish_wanted_.notify_one();
 }
 
-std::optional<std::string> Container::finish_reason() {
+std::optional<StopWish> Container::finish_wish() {
   if (!finish_requested_.load(std::memory_order_relaxed)) return std::nullopt;
   const std::lock_guard lock(finish_mutex_);
-  return finish_ ? std::optional(finish_->second) : std::nullopt;
+  if (!finish_) return std::nullopt;
+  return StopWish{.end = RunEnd::finished, .component = finish_->first, .reason = finish_->second};
 }
 
 unsigned Container::writer_index(const InputPort& port, std::uint64_t handle) {
   const std::lock_guard lock(writer_indices_mutex_);
   if (const auto found = writer_indices_.find(handle); found != writer_indices_.end()) return found->second;
   // Of another process: it says so itself. One that said nothing, or is gone already, comes last.
-  const std::optional<dds::WriterIdentity> identity = port.reader().matched_writer(handle);
+  const std::optional<dds::EndpointIdentity> identity = port.reader().matched_writer(handle);
   if (!identity) return ~0u;
   writer_indices_.emplace(handle, identity->index);
   return identity->index;
@@ -141,111 +136,7 @@ void Container::activate() {
   publish_changed_statuses();
 }
 
-Time Container::next_due() const {
-  Time due = Time::max();
-  for (const auto& instance : instances_) due = std::min(due, instance->next_due());
-  return due;
-}
-
-void Container::for_each_parallel(const std::vector<ComponentInstance*>& instances,
-                                  const std::function<void(ComponentInstance&)>& work) {
-  if (workers_ && instances.size() > 1)
-    workers_->run(instances.size(), [&](std::size_t i) { work(*instances[i]); });
-  else
-    for (ComponentInstance* instance : instances) work(*instance);
-}
-
-/// Handles what was published in the cycle before; false if there was nothing.
-bool Container::run_cycle_of_inputs() {
-  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
-  }
-  batch_.clear();
-  batch_.swap(ready_);
-  ready_spin_.clear(std::memory_order_release);
-  if (batch_.empty()) return false;
-  ++instant_.cycle;
-  ++cycles_;
-  std::sort(batch_.begin(), batch_.end(),
-            [](const ComponentInstance* a, const ComponentInstance* b) { return a->index() < b->index(); });
-  // All are staged before any runs: a sample published in this cycle belongs to the next.
-  for (ComponentInstance* instance : batch_) {
-    instance->schedule.store(0, std::memory_order_release);
-    instance->stage(instant_.time);
-  }
-  for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_inputs(instant_); });
-  return true;
-}
-
-/// Handles everything at the present time; false, with the report filled, if it never ends.
-bool Container::run_one_time(RunReport& report) {
-  instant_.cycle = 0;
-  std::vector<ComponentInstance*> due;
-  for (const auto& instance : instances_)
-    if (instance->next_due() <= instant_.time) due.push_back(instance.get());
-  if (!due.empty()) {
-    ++cycles_;
-    for_each_parallel(due, [this](ComponentInstance& instance) { instance.run_due(instant_); });
-  }
-  while (run_cycle_of_inputs()) {
-    if (instant_.cycle < kMaxCycles) continue;
-    report.end = RunEnd::livelock;
-    report.reason = "components publish to each other for ever at one time: ";
-    for (const ComponentInstance* instance : batch_)
-      report.reason += (instance == batch_.front() ? "" : ", ") + instance->name();
-    return false;
-  }
-  publish_changed_statuses();
-  return true;
-}
-
-void Container::advance(Time until) {
-  RunReport report;
-  for (;;) {
-    if (!run_one_time(report)) throw std::runtime_error(report.reason);
-    const Time next = next_due();
-    if (next > until) break;
-    instant_ = {next, 0};
-  }
-  instant_ = {until, 0};
-}
-
-RunReport Container::run_lockstep(const RunControl& control) {
-  using Clock = std::chrono::steady_clock;
-  RunReport report;
-  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
-  Clock::time_point next_progress = Clock::now();
-  for (unsigned steps = 0;; ++steps) {
-    if (!run_one_time(report)) break;
-    if (const auto why = finish_reason()) {
-      report.end = RunEnd::finished;
-      report.reason = *why;
-      break;
-    }
-    if (control.stop && control.stop->load(std::memory_order_relaxed)) {
-      report.end = RunEnd::interrupted;
-      report.reason = "interrupted";
-      break;
-    }
-    if (control.progress && steps % 16 == 0 && Clock::now() >= next_progress) {
-      control.progress(instant_.time);
-      next_progress = Clock::now() + kProgressPeriod;
-    }
-    const Time next = next_due();
-    if (next == Time::max()) {
-      report.end = RunEnd::idle;
-      report.reason = "no component has a timer, so nothing would ever happen again";
-      break;
-    }
-    if (next > end) {
-      instant_ = {end, 0};
-      report.end = RunEnd::time_limit;
-      report.reason = "the time asked for has passed";
-      break;
-    }
-    instant_ = {next, 0};
-  }
-  return report;
-}
+void Container::advance(Time until) { lockstep_->advance(until); }
 
 RunReport Container::run_wall(const RunControl& control) {
   RunReport report;
@@ -291,16 +182,12 @@ RunReport Container::supervise(const RunControl& control) {
 }
 
 void Container::end() {
+  if (lockstep_) return lockstep_->end();
   // Last words first, then everybody hears them, then nobody speaks any more.
   for (const auto& instance : instances_) instance->deactivate(instant_);
-  if (spec_.clock == ClockMode::lockstep) {
-    while (instant_.cycle < kMaxCycles && run_cycle_of_inputs()) {
-    }
-  } else {
-    for (const auto& instance : instances_) {
-      instance->stage(instant_.time);
-      instance->run_inputs(instant_);
-    }
+  for (const auto& instance : instances_) {
+    instance->stage(instant_.time);
+    instance->run_inputs(instant_);
   }
   for (const auto& instance : instances_) instance->shutdown(instant_);
   publish_changed_statuses();
@@ -308,10 +195,10 @@ void Container::end() {
 
 RunReport Container::run(const RunControl& control) {
   activate();
-  RunReport report = spec_.clock == ClockMode::lockstep ? run_lockstep(control) : run_wall(control);
+  RunReport report = lockstep_ ? lockstep_->run(control) : run_wall(control);
   end();
   report.ended_at = instant_.time;
-  report.cycles = cycles_;
+  if (lockstep_) report.cycles = lockstep_->cycles();
   return report;
 }
 

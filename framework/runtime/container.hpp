@@ -20,9 +20,10 @@
 namespace kervan::runtime {
 
 class Dispatcher;
+class Lockstep;
 class LogSinks;
 class StatusWriter;
-class WorkerPool;
+struct StopWish;
 
 /// How a run ended.
 enum class RunEnd {
@@ -75,6 +76,11 @@ class Container {
   /// The chain of every traced writer, combined in writer order.
   std::uint64_t trace_hash() const;
 
+  // Used by whatever drives the components.
+  /// The wish of the first component, in the composition's order, that called finish().
+  std::optional<StopWish> finish_wish();
+  void publish_changed_statuses();
+
   // Used by the ports and instances.
   void input_ready(InputPort& port) noexcept;
   void request_finish(unsigned component, std::string why);
@@ -84,21 +90,12 @@ class Container {
   std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
 
  private:
-  RunReport run_lockstep(const RunControl& control);
   RunReport run_wall(const RunControl& control);
   RunReport supervise(const RunControl& control);
-  bool run_one_time(RunReport& report);
-  bool run_cycle_of_inputs();
-  void for_each_parallel(const std::vector<ComponentInstance*>& instances,
-                         const std::function<void(ComponentInstance&)>& work);
-  Time next_due() const;
-  void publish_changed_statuses();
-  std::optional<std::string> finish_reason();
 
   ContainerSpec spec_;
   Instant instant_;
   Time started_{};
-  std::uint64_t cycles_ = 0;
   std::unique_ptr<dds::Domain> domain_;
   std::unique_ptr<LogSinks> log_sinks_;
   std::unique_ptr<StatusWriter> status_writer_;
@@ -106,10 +103,7 @@ class Container {
   std::map<std::uint64_t, unsigned> writer_indices_;  ///< by Cyclone's instance handle; under the mutex
   std::vector<std::unique_ptr<ComponentInstance>> instances_;
   std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
-  std::unique_ptr<WorkerPool> workers_;
-  std::atomic_flag ready_spin_ = ATOMIC_FLAG_INIT;
-  std::vector<ComponentInstance*> ready_;  ///< under ready_spin_; lockstep: instances with arrived samples
-  std::vector<ComponentInstance*> batch_;  ///< scratch of a cycle
+  std::unique_ptr<Lockstep> lockstep_;
   std::atomic<bool> finish_requested_{false};
   std::mutex finish_mutex_;
   std::condition_variable finish_wanted_;

@@ -25,7 +25,7 @@ PortBinding binding_of(const ComponentSpec& spec, const PortInfo& port) {
 }  // namespace
 
 ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type,
-                                     unsigned index, unsigned first_writer)
+                                     unsigned index, FirstIndices first)
     : container_(container), type_(type.type), index_(index), log_(container.make_logger(spec)) {
   ComponentSetup setup;
   setup.name = spec.name;
@@ -36,10 +36,10 @@ ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& 
   for (OutputBase* output : component_->outputs_)
     outputs_.push_back(std::make_unique<OutputPort>(*output, binding_of(spec, output->info()), *this,
                                                     container.domain(), clock,
-                                                    first_writer + static_cast<unsigned>(outputs_.size())));
+                                                    first.writer + static_cast<unsigned>(outputs_.size())));
   for (InputBase* input : component_->inputs_)
-    inputs_.push_back(
-        std::make_unique<InputPort>(*input, binding_of(spec, input->info()), *this, container.domain(), clock));
+    inputs_.push_back(std::make_unique<InputPort>(*input, binding_of(spec, input->info()), *this, container.domain(),
+                                                  clock, first.reader + static_cast<unsigned>(inputs_.size())));
   component_->instance_ = this;
 }
 

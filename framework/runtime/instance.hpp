@@ -15,11 +15,17 @@ namespace kervan::runtime {
 class Container;
 class Dispatcher;
 
+/// Where a component's endpoints begin in the composition's counting of all writers and of all readers.
+struct FirstIndices {
+  unsigned writer = 0;
+  unsigned reader = 0;
+};
+
 class ComponentInstance {
  public:
   /// Constructs the component, then its endpoints. Throws what the component's constructor throws, or DdsError.
   ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type, unsigned index,
-                    unsigned first_writer);
+                    FirstIndices first);
   ~ComponentInstance();
 
   const std::string& name() const { return component_->name_; }

@@ -7,6 +7,7 @@
 #include "framework/dds/hash.hpp"
 #include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
+#include "framework/runtime/countdown.hpp"
 #include "framework/runtime/instance.hpp"
 
 namespace kervan::runtime {
@@ -28,15 +29,17 @@ dds::CyclonePart part_of(ClockMode clock) {
 }  // namespace
 
 InputPort::InputPort(InputBase& input, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
-                     ClockMode clock)
+                     ClockMode clock, unsigned index)
     : input_(input),
       binding_(binding),
       owner_(owner),
+      index_(index),
       clock_(clock),
       inbox_limit_(inbox_limit(clock, binding.profile, input.type().keyed)),
       cache_(binding.profile, input.info().qos.max_age(), input.type().keyed, static_cast<bool>(input.deliver_),
              clock != ClockMode::wall) {
-  reader_ = std::make_unique<dds::Reader>(domain, binding.topic, input.type(), binding.profile, part_of(clock), *this);
+  reader_ = std::make_unique<dds::Reader>(domain, binding.topic, input.type(), binding.profile, part_of(clock), *this,
+                                          index_);
   input.port_ = this;
 }
 
@@ -44,6 +47,7 @@ InputPort::~InputPort() {
   input_.port_ = nullptr;
   reader_.reset();  // no sample arrives from here on
   for (std::size_t i = inbox_first_; i < inbox_.size(); ++i) dds::release(inbox_[i].block);
+  for (const dds::Arrival& arrival : early_) dds::release(arrival.block);
   for (dds::SampleBlock* block : given_) dds::release(block);
 }
 
@@ -68,15 +72,23 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
     }
   }
   inbox_.push_back(arrival);
+  // What comes from another container is only looked at when a fence says that its time has come.
+  CountedWriters::Writer* const elsewhere = counted_.empty() ? nullptr : counted_.find(arrival.writer);
+  const bool last_awaited = elsewhere && ++elsewhere->arrived == elsewhere->awaited;
   unlock();
   if (overflow) dds::release(overflow);
-  if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
+  if (!elsewhere) mark_ready();
+  if (last_awaited) arrivals_->done();
 }
 
 void InputPort::on_writer_gone(std::uint64_t writer) noexcept {
   lock();
   gone_.push_back(writer);
   unlock();
+  mark_ready();
+}
+
+void InputPort::mark_ready() noexcept {
   if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
 }
 
@@ -84,7 +96,33 @@ void InputPort::on_writer_lost(std::uint64_t writer) noexcept {
   lock();
   lost_.push_back(writer);
   unlock();
-  if (!ready_.exchange(true, std::memory_order_release)) owner_.container().input_ready(*this);
+  mark_ready();
+}
+
+std::size_t InputPort::count_writer(std::uint64_t handle, unsigned index) {
+  lock();
+  counted_.add(handle, index);
+  const std::size_t place = counted_.all().size() - 1;
+  unlock();
+  return place;
+}
+
+void InputPort::expect(std::size_t place, std::uint64_t sent, Countdown& arrivals) {
+  lock();
+  CountedWriters::Writer& writer = counted_[place];
+  writer.allowed = sent;
+  writer.awaited = sent;
+  arrivals_ = &arrivals;
+  if (writer.arrived < sent) arrivals.add(1);
+  unlock();
+  mark_ready();
+}
+
+std::vector<CountedWriters::Writer> InputPort::counted_writers() const {
+  lock();
+  std::vector<CountedWriters::Writer> writers = counted_.all();
+  unlock();
+  return writers;
 }
 
 PortCounters InputPort::counters() const {
@@ -95,6 +133,15 @@ PortCounters InputPort::counters() const {
   return counters;
 }
 
+void InputPort::stage_one(const dds::Arrival& arrival, Time now) {
+  const bool ordered = clock_ == ClockMode::lockstep;
+  const bool needs_writer = ordered || binding_.profile.ownership == Ownership::exclusive ||
+                            binding_.profile.liveliness == Liveliness::manual;
+  const unsigned writer = needs_writer ? owner_.container().writer_index(*this, arrival.writer) : 0;
+  const Time received = ordered ? now : dds::received_at(arrival.block);
+  staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
+}
+
 void InputPort::stage(Time now) {
   lock();
   arrived_.swap(inbox_);
@@ -102,19 +149,20 @@ void InputPort::stage(Time now) {
   const std::vector<std::uint64_t> gone = std::exchange(gone_, {});
   const std::vector<std::uint64_t> lost = std::exchange(lost_, {});
   unlock();
-  const bool ordered = clock_ == ClockMode::lockstep;
-  const bool needs_writers = ordered || binding_.profile.ownership == Ownership::exclusive ||
-                             binding_.profile.liveliness == Liveliness::manual;
   staged_.clear();
-  for (std::size_t i = first; i < arrived_.size(); ++i) {
-    const dds::Arrival& arrival = arrived_[i];
-    const unsigned writer = needs_writers ? owner_.container().writer_index(*this, arrival.writer) : 0;
-    const Time received = ordered ? now : dds::received_at(arrival.block);
-    staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
-  }
+  const auto stage_if_due = [&](const dds::Arrival& arrival) {
+    CountedWriters::Writer* const elsewhere = counted_.find(arrival.writer);
+    if (elsewhere && elsewhere->staged == elsewhere->allowed) return false;
+    if (elsewhere) ++elsewhere->staged;
+    stage_one(arrival, now);
+    return true;
+  };
+  std::erase_if(early_, stage_if_due);
+  for (std::size_t i = first; i < arrived_.size(); ++i)
+    if (!stage_if_due(arrived_[i])) early_.push_back(arrived_[i]);
   arrived_.clear();
   // Each writer's samples arrived in the order of their sequence, so sorting by writer gives (writer, sequence).
-  if (ordered)
+  if (clock_ == ClockMode::lockstep)
     std::stable_sort(staged_.begin(), staged_.end(),
                      [](const StagedSample& a, const StagedSample& b) { return a.writer < b.writer; });
   cache_.stage(staged_);

@@ -8,12 +8,14 @@
 
 #include "framework/component/ports.hpp"
 #include "framework/dds/endpoint.hpp"
+#include "framework/runtime/counted_writers.hpp"
 #include "framework/runtime/sample_cache.hpp"
 #include "framework/runtime/spec.hpp"
 
 namespace kervan::runtime {
 
 class ComponentInstance;
+class Countdown;
 
 /// Where the run stands: logical time and delta cycle; under the wall clock the cycle stays 0.
 struct Instant {
@@ -24,7 +26,7 @@ struct Instant {
 class InputPort final : public dds::SampleSink {
  public:
   InputPort(InputBase& input, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
-            ClockMode clock);
+            ClockMode clock, unsigned index);
   ~InputPort();
 
   const std::string& name() const { return input_.name(); }
@@ -33,6 +35,7 @@ class InputPort final : public dds::SampleSink {
   SampleCache& cache() { return cache_; }
   const SampleCache& cache() const { return cache_; }
   ComponentInstance& owner() { return owner_; }
+  unsigned index() const { return index_; }  ///< of the reader, in the whole composition
   const dds::Reader& reader() const { return *reader_; }
   bool has_handler() const { return static_cast<bool>(input_.deliver_); }
   PortCounters counters() const;
@@ -43,6 +46,15 @@ class InputPort final : public dds::SampleSink {
   void deliver(Time now);
   /// Whether samples have arrived since the last stage(); clears the mark.
   bool take_ready() { return ready_.exchange(false, std::memory_order_acquire); }
+
+  // Under lockstep in several containers.
+  /// From now on counts what comes from this writer of another container. Returns its place, for expect().
+  std::size_t count_writer(std::uint64_t handle, unsigned index);
+  /// The writer had published `sent` samples up to the present cycle: those are staged next, and later ones wait.
+  /// Unless all are here, `arrivals` waits for the last of them.
+  void expect(std::size_t place, std::uint64_t sent, Countdown& arrivals);
+  /// Those counted so far.
+  std::vector<CountedWriters::Writer> counted_writers() const;
 
   // Used by InputBase.
   dds::SampleBlock* latest() const;
@@ -62,9 +74,13 @@ class InputPort final : public dds::SampleSink {
   }
   void unlock() const noexcept { spin_.clear(std::memory_order_release); }
 
+  void mark_ready() noexcept;
+  void stage_one(const dds::Arrival& arrival, Time now);
+
   InputBase& input_;
   PortBinding binding_;
   ComponentInstance& owner_;
+  unsigned index_;
   ClockMode clock_;
   std::size_t inbox_limit_;
   SampleCache cache_;
@@ -75,6 +91,9 @@ class InputPort final : public dds::SampleSink {
   std::vector<std::uint64_t> lost_;       ///< under spin_: writers that were not alive for a lease
   std::uint64_t overflowed_ = 0;          ///< under spin_: dropped because the component did not run
   std::vector<dds::Arrival> arrived_;     ///< scratch of stage(), swapped with inbox_
+  std::vector<dds::Arrival> early_;       ///< arrived from a container that is one cycle ahead; its blocks are retained
+  CountedWriters counted_;                ///< under spin_; `allowed` and `staged` are the dispatching thread's
+  Countdown* arrivals_ = nullptr;         ///< under spin_
   std::vector<StagedSample> staged_;      ///< scratch of stage()
   std::vector<dds::SampleBlock*> given_;  ///< taken by the component, kept alive until it takes again
   std::atomic<bool> ready_{false};

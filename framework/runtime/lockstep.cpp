@@ -1,0 +1,167 @@
+#include "framework/runtime/lockstep.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "framework/runtime/workers.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+/// More cycles than this at one time mean that ports publish to each other for ever.
+constexpr unsigned kMaxCycles = 1000;
+
+/// Whoever runs within so many cycles of the limit belongs to the loop.
+constexpr unsigned kLongestLoop = 100;
+
+constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);
+
+}  // namespace
+
+Lockstep::Lockstep(Container& container, Instant& instant, unsigned threads)
+    : container_(container), instant_(instant), looping_(container.spec().components.size(), false) {
+  if (threads > 1) workers_ = std::make_unique<WorkerPool>(threads);
+}
+
+Lockstep::~Lockstep() = default;
+
+void Lockstep::arrived(ComponentInstance& instance) noexcept {
+  if (instance.schedule.exchange(1, std::memory_order_acq_rel) != 0) return;
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  ready_.push_back(&instance);
+  ready_spin_.clear(std::memory_order_release);
+}
+
+Time Lockstep::next_due() const {
+  Time due = Time::max();
+  for (const auto& instance : container_.instances()) due = std::min(due, instance->next_due());
+  return due;
+}
+
+void Lockstep::for_each_parallel(const std::vector<ComponentInstance*>& instances,
+                                 const std::function<void(ComponentInstance&)>& work) {
+  if (workers_ && instances.size() > 1)
+    workers_->run(instances.size(), [&](std::size_t i) { work(*instances[i]); });
+  else
+    for (ComponentInstance* instance : instances) work(*instance);
+}
+
+/// Cycle 0: deadlines and timers.
+void Lockstep::run_due() {
+  instant_.cycle = 0;
+  batch_.clear();
+  for (const auto& instance : container_.instances())
+    if (instance->next_due() <= instant_.time) batch_.push_back(instance.get());
+  if (batch_.empty()) return;
+  ++cycles_;
+  for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_due(instant_); });
+}
+
+/// The next cycle: handles what was published in the one before.
+void Lockstep::run_inputs() {
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  batch_.clear();
+  batch_.swap(ready_);
+  ready_spin_.clear(std::memory_order_release);
+  ++instant_.cycle;
+  ++cycles_;
+  std::ranges::sort(batch_, {}, &ComponentInstance::index);
+  // All are staged before any runs: a sample published in this cycle belongs to the next.
+  for (ComponentInstance* instance : batch_) {
+    instance->schedule.store(0, std::memory_order_release);
+    instance->stage(instant_.time);
+    if (instant_.cycle + kLongestLoop > kMaxCycles) looping_[instance->index()] = true;
+  }
+  for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_inputs(instant_); });
+}
+
+/// Finds out what this cycle has brought.
+void Lockstep::agree() {
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  round_.more = !ready_.empty();
+  ready_spin_.clear(std::memory_order_release);
+  round_.stop.reset();
+  if (round_.more) return;
+  round_.next = next_due();
+  round_.stop = container_.finish_wish();
+  if (!round_.stop && stop_ && stop_->load(std::memory_order_relaxed))
+    round_.stop = StopWish{.end = RunEnd::interrupted, .reason = "interrupted"};
+}
+
+/// Handles everything at the present time; false, with the report filled, if it never ends.
+bool Lockstep::run_one_time(RunReport& report) {
+  run_due();
+  for (agree(); round_.more; agree()) {
+    if (instant_.cycle < kMaxCycles) {
+      run_inputs();
+      continue;
+    }
+    report.end = RunEnd::livelock;
+    report.reason = "components publish to each other for ever at one time";
+    const char* separator = ": ";
+    for (std::size_t i = 0; i < looping_.size(); ++i) {
+      if (!looping_[i]) continue;
+      report.reason += separator + container_.spec().components[i].name;
+      separator = ", ";
+    }
+    return false;
+  }
+  container_.publish_changed_statuses();
+  return true;
+}
+
+void Lockstep::advance(Time until) {
+  RunReport report;
+  for (;;) {
+    if (!run_one_time(report)) throw std::runtime_error(report.reason);
+    if (round_.next > until) break;
+    instant_ = {round_.next, 0};
+  }
+  instant_ = {until, 0};
+}
+
+RunReport Lockstep::run(const RunControl& control) {
+  using Clock = std::chrono::steady_clock;
+  RunReport report;
+  stop_ = control.stop;
+  const Time end = control.limit == forever ? Time::max() : instant_.time + control.limit;
+  Clock::time_point next_progress = Clock::now();
+  for (unsigned steps = 0; run_one_time(report); ++steps) {
+    if (round_.stop) {
+      report.end = round_.stop->end;
+      report.reason = round_.stop->reason;
+      break;
+    }
+    if (control.progress && steps % 16 == 0 && Clock::now() >= next_progress) {
+      control.progress(instant_.time);
+      next_progress = Clock::now() + kProgressPeriod;
+    }
+    if (round_.next == Time::max()) {
+      report.end = RunEnd::idle;
+      report.reason = "no component has a timer, so nothing would ever happen again";
+      break;
+    }
+    if (round_.next > end) {
+      instant_ = {end, 0};
+      report.end = RunEnd::time_limit;
+      report.reason = "the time asked for has passed";
+      break;
+    }
+    instant_ = {round_.next, 0};
+  }
+  return report;
+}
+
+void Lockstep::end() {
+  // Last words first, then everybody hears them, then nobody speaks any more.
+  for (const auto& instance : container_.instances()) instance->deactivate(instant_);
+  for (agree(); round_.more && instant_.cycle < kMaxCycles; agree()) run_inputs();
+  for (const auto& instance : container_.instances()) instance->shutdown(instant_);
+  container_.publish_changed_statuses();
+}
+
+}  // namespace kervan::runtime
