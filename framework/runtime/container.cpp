@@ -1,6 +1,7 @@
 #include "framework/runtime/container.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <thread>
 
 #include "framework/component/error.hpp"
@@ -26,6 +27,7 @@ std::string_view to_text(RunEnd end) {
     case RunEnd::interrupted: return "interrupted";
     case RunEnd::idle: return "idle";
     case RunEnd::livelock: return "livelock";
+    case RunEnd::peer_lost: return "peer lost";
   }
   return "unknown";
 }
@@ -57,6 +59,7 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(st
     first.writer += static_cast<unsigned>(instances_.back()->outputs().size());
     first.reader += static_cast<unsigned>(instances_.back()->inputs().size());
   }
+  if (lockstep_) lockstep_->connect();
 }
 
 Container::~Container() {
@@ -72,12 +75,15 @@ ComponentInstance* Container::find(const std::string& name) {
 }
 
 std::uint64_t Container::trace_hash() const {
+  std::vector<std::pair<unsigned, std::uint64_t>> traces;
+  for (const auto& instance : instances_)
+    for (const auto& output : instance->outputs()) traces.emplace_back(output->index(), output->trace());
+  if (lockstep_) std::ranges::copy(lockstep_->traces_elsewhere(), std::back_inserter(traces));
+  std::ranges::sort(traces);
   Hash64 hash;
-  for (const auto& instance : instances_) {
-    for (const auto& output : instance->outputs()) {
-      hash.number(output->index());
-      hash.number(output->trace());
-    }
+  for (const auto& [writer, trace] : traces) {
+    hash.number(writer);
+    hash.number(trace);
   }
   return hash.value();
 }
@@ -194,11 +200,18 @@ void Container::end() {
 }
 
 RunReport Container::run(const RunControl& control) {
+  if (lockstep_) {
+    if (const auto impossible = lockstep_->join(control)) return *impossible;
+  }
   activate();
   RunReport report = lockstep_ ? lockstep_->run(control) : run_wall(control);
   end();
   report.ended_at = instant_.time;
-  if (lockstep_) report.cycles = lockstep_->cycles();
+  if (lockstep_) {
+    report.cycles = lockstep_->cycles();
+    // Lost while everybody was ending: then there is no common trace.
+    if (!lockstep_->lost().empty()) report.end = RunEnd::peer_lost, report.reason = lockstep_->lost();
+  }
   return report;
 }
 

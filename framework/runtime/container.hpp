@@ -32,6 +32,7 @@ enum class RunEnd {
   interrupted,  ///< the stop flag was set
   idle,         ///< lockstep only: no timer is left and no sample, so nothing would ever happen again
   livelock,     ///< lockstep only: a loop of ports publishes for ever at one time
+  peer_lost,    ///< lockstep only: another container died, stopped, or never came
 };
 std::string_view to_text(RunEnd end);
 
@@ -43,9 +44,10 @@ struct RunReport {
 };
 
 struct RunControl {
-  Duration limit = forever;                 ///< on the composition's clock, from the start of the run
-  const std::atomic<bool>* stop = nullptr;  ///< ends the run in good order when set
-  std::function<void(Time)> progress = {};  ///< called about ten times a second of wall time
+  Duration limit = forever;                            ///< on the composition's clock, from the start of the run
+  const std::atomic<bool>* stop = nullptr;             ///< ends the run in good order when set
+  Duration members_within = std::chrono::seconds(30);  ///< lockstep: wall time in which the other containers must come
+  std::function<void(Time)> progress = {};             ///< called about ten times a second of wall time
 };
 
 class Container {

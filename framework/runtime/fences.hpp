@@ -1,10 +1,13 @@
-/// Keeps the containers of a lockstep run in step: after every cycle each sends a Fence and waits for those of all others
-/// and for the samples they announce. All hold the same numbers then, so all decide the same and nobody coordinates.
+/// Keeps the containers of a lockstep run in step: after every cycle each sends a Fence and waits for those of all
+/// others and for the samples they announce. All hold the same numbers then, so all decide the same and nobody
+/// coordinates.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -32,34 +35,34 @@ struct StopWish {
 
 /// What is known after a cycle: first of one container, then of all.
 struct Round {
-  bool more = false;          ///< something was published that an input of the composition hears
-  Time next = Time::max();    ///< the earliest timer or deadline; only said if there is no more
+  bool more = false;                  ///< something was published that an input of the composition hears
+  Time next = Time::max();            ///< the earliest timer or deadline; only said if there is no more
   std::optional<StopWish> stop = {};  ///< only said if there is no more
-  std::vector<unsigned> ran = {};     ///< after the last cycle that is allowed: the components of the loop
+  std::vector<unsigned> loop = {};    ///< after the last cycle that is allowed: components that go on and on
 };
 
 class Fences final : public dds::SampleSink {
  public:
-  /// The endpoints of the fence topic. Throws ConfigError if the container's spec cannot work, DdsError.
+  /// Makes the endpoints of the fence topic. Throws ConfigError if the container's spec cannot work, DdsError.
   explicit Fences(Container& container);
   ~Fences();
 
-  /// Waits until every pair of endpoints of the composition is matched, seen from both sides. Nothing may be published
-  /// before. `end` is when the run ends at the latest: in, by this container; out, by any. Says how it ended if it did.
+  /// Waits until every pair of endpoints of the composition is matched, seen from both sides; nothing may be published
+  /// before. `end` is when the run ends at the latest: going in, for this container; coming out, for all. If the run
+  /// cannot begin, says why.
   std::optional<RunReport> join(const RunControl& control, Time& end);
 
-  /// Whether this container's writers have published anything that an input of the composition hears, since the last
-  /// exchange().
+  /// Whether the writers of this container have published anything since the last exchange() that an input hears.
   bool grew();
-  /// Tells the others what is known here, and makes it what is known everywhere. Every sample of the cycle is here then,
-  /// and the inputs that are to handle them are marked. False if a member is lost: from then on this container is alone.
+  /// Tells the others what is known here, and makes of it what is known everywhere. Every sample of the cycle is here
+  /// then, and the inputs that handle them next are marked. False if a container is lost: from then on, this is over.
   bool exchange(Instant at, Round& round);
-  /// After the last cycle: everybody gets to know every trace. False if a member is lost.
+  /// After the last cycle: tells everybody every trace. False if a container is lost.
   bool leave(Instant at);
 
-  /// Which container was lost, where; empty as long as none is.
-  const std::string& lost() const { return lost_reason_; }
-  /// The traces of the writers elsewhere, after leave().
+  /// Which container was lost and where the run stood; empty as long as none is.
+  const std::string& lost() const { return lost_; }
+  /// By writer index, those of the writers elsewhere; after leave().
   const std::vector<std::pair<unsigned, std::uint64_t>>& traces() const { return traces_; }
 
   void on_sample(const dds::Arrival& arrival) noexcept override;
@@ -67,49 +70,74 @@ class Fences final : public dds::SampleSink {
   void on_status() noexcept override {}
 
  private:
-  struct Member;
-  struct HeardWriter;
-  struct Hearer;
+  struct Member {
+    std::string name;
+    bool there = false;                         ///< its fence endpoints and ours are matched
+    std::uint64_t writer = 0;                   ///< under spin_: Cyclone's handle of its fence writer
+    std::array<dds::SampleBlock*, 2> fences{};  ///< under spin_: it may be one cycle ahead, and no more
+    unsigned count = 0;                         ///< under spin_: of `fences`
+    bool awaited = false;                       ///< under spin_
+    bool leaving = false;                       ///< under spin_: it has sent its last fence
+  };
+  struct HeardWriter {
+    OutputPort* output;
+    bool elsewhere;  ///< an input of another container hears it
+    std::uint64_t sent = 0;
+  };
+  struct Hearer {
+    InputPort* input;
+    std::size_t place;  ///< of the writer among those it counts
+  };
 
-  bool is_self(unsigned member) const { return member == self_; }
-  kervan_msgs::msg::Fence& begin(Instant at);
-  void send();
-  bool receive(Instant at);
-  bool wait(Instant at);
-  void give_up(Instant at);
-  void diagnose(Instant at);
-  bool matched();
-  std::string missing() const;
-  void prepare();
-  void watch();
-  void stop_watching();
+  void lock() const noexcept {
+    while (spin_.test_and_set(std::memory_order_acquire)) {
+    }
+  }
+  void unlock() const noexcept { spin_.clear(std::memory_order_release); }
+
+  kervan_msgs::msg::Fence& own();
+  void send(Instant at);
+  bool receive(Instant at, const std::function<bool()>& give_up = {});
+  bool wait(Instant at, const std::function<bool()>& give_up = {});
+  void release_fences();
   void member_gone(unsigned member) noexcept;
+  void say_lost(Instant at);
+  std::string still_missing() const;
+
+  bool find_members();
+  bool find_everybody();
+  std::string not_found() const;
+  void count_writers_elsewhere();
+  std::uint64_t hash_of_run() const;
+
+  void watch();
 
   Container& container_;
   unsigned self_ = 0;
   Matching matching_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<Member> members_;
-  std::vector<HeardWriter> heard_writers_;     ///< of this container, those that any input of the composition hears
-  std::vector<std::vector<Hearer>> hearers_;  ///< inputs of this container, by the writer elsewhere that they hear
-  std::vector<dds::SampleBlock*> fences_;      ///< scratch: those of this round
+  std::vector<HeardWriter> heard_;                      ///< writers of this container that an input hears
+  std::vector<std::vector<Hearer>> hearers_;            ///< inputs of this container, by the writer elsewhere they hear
+  std::vector<const kervan_msgs::msg::Fence*> fences_;  ///< of this round
+  std::vector<dds::SampleBlock*> blocks_;               ///< that hold them
   std::vector<std::pair<unsigned, std::uint64_t>> traces_;
-  dds::SampleBlock* own_ = nullptr;  ///< the fence being filled
+  std::string lost_;
 
   Countdown countdown_;
-  mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;  ///< guards the members' fences
-  std::atomic<int> gone_{-1};                         ///< the first member that was lost
-  std::string relayed_;                               ///< under spin_: another container's words about a lost member
-  std::string lost_reason_;
+  mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
+  std::atomic<int> gone_{-1};        ///< the first member that was lost
+  std::string words_;                ///< under spin_: what another container said of a lost member
+  std::vector<std::uint64_t> left_;  ///< under spin_: writers that were gone before it was known whose they were
 
-  std::atomic<std::uint64_t> progress_{0};  ///< odd while waiting
-  std::atomic<bool> diagnosis_wanted_{false};
+  std::atomic<std::uint64_t> progress_{0};  ///< counts beginnings and ends of waiting: odd while waiting
   std::mutex watch_mutex_;
   std::condition_variable watch_end_;
   bool watch_ended_ = false;  ///< under watch_mutex_
   std::thread watchdog_;
 
   std::unique_ptr<dds::Writer> writer_;
+  dds::SampleBlock* own_ = nullptr;      ///< being filled
   std::unique_ptr<dds::Reader> reader_;  ///< last: it calls into the members above
 };
 

@@ -26,6 +26,19 @@ Lockstep::Lockstep(Container& container, Instant& instant, unsigned threads)
 
 Lockstep::~Lockstep() = default;
 
+void Lockstep::connect() {
+  if (container_.spec().members.size() > 1) fences_ = std::make_unique<Fences>(container_);
+}
+
+std::optional<RunReport> Lockstep::join(const RunControl& control) {
+  end_ = control.limit == forever ? Time::max() : Time{} + control.limit;
+  return fences_ ? fences_->join(control, end_) : std::nullopt;
+}
+
+std::vector<std::pair<unsigned, std::uint64_t>> Lockstep::traces_elsewhere() const {
+  return fences_ ? fences_->traces() : std::vector<std::pair<unsigned, std::uint64_t>>{};
+}
+
 void Lockstep::arrived(ComponentInstance& instance) noexcept {
   if (instance.schedule.exchange(1, std::memory_order_acq_rel) != 0) return;
   while (ready_spin_.test_and_set(std::memory_order_acquire)) {
@@ -78,37 +91,59 @@ void Lockstep::run_inputs() {
   for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_inputs(instant_); });
 }
 
-/// Finds out what this cycle has brought.
+/// Finds out what this cycle has brought, here and everywhere.
 void Lockstep::agree() {
-  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  round_ = {};
+  if (together()) {
+    round_.more = fences_->grew();
+  } else {
+    while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+    }
+    round_.more = !ready_.empty();
+    ready_spin_.clear(std::memory_order_release);
   }
-  round_.more = !ready_.empty();
-  ready_spin_.clear(std::memory_order_release);
-  round_.stop.reset();
-  if (round_.more) return;
-  round_.next = next_due();
-  round_.stop = container_.finish_wish();
-  if (!round_.stop && stop_ && stop_->load(std::memory_order_relaxed))
-    round_.stop = StopWish{.end = RunEnd::interrupted, .reason = "interrupted"};
+  if (!round_.more) {
+    round_.next = next_due();
+    round_.stop = container_.finish_wish();
+    if (!round_.stop && stop_ && stop_->load(std::memory_order_relaxed))
+      round_.stop = StopWish{.end = RunEnd::interrupted, .component = 0, .reason = "interrupted"};
+  }
+  if (instant_.cycle >= kMaxCycles)
+    for (unsigned component = 0; component < looping_.size(); ++component)
+      if (looping_[component]) round_.loop.push_back(component);
+  if (together()) fences_->exchange(instant_, round_);
 }
 
-/// Handles everything at the present time; false, with the report filled, if it never ends.
+std::string Lockstep::livelock() const {
+  std::vector<unsigned> loop = round_.loop;
+  std::ranges::sort(loop);
+  std::string text = "components publish to each other for ever at one time";
+  const char* separator = ": ";
+  for (const unsigned component : loop) {
+    if (component >= container_.spec().components.size()) continue;
+    text += separator + container_.spec().components[component].name;
+    separator = ", ";
+  }
+  return text;
+}
+
+/// Handles everything at the present time; false, with the report filled, if it never ends or another container is
+/// lost.
 bool Lockstep::run_one_time(RunReport& report) {
   run_due();
-  for (agree(); round_.more; agree()) {
-    if (instant_.cycle < kMaxCycles) {
-      run_inputs();
-      continue;
+  for (agree();; agree()) {
+    if (!lost().empty()) {
+      report.end = RunEnd::peer_lost;
+      report.reason = lost();
+      return false;
     }
-    report.end = RunEnd::livelock;
-    report.reason = "components publish to each other for ever at one time";
-    const char* separator = ": ";
-    for (std::size_t i = 0; i < looping_.size(); ++i) {
-      if (!looping_[i]) continue;
-      report.reason += separator + container_.spec().components[i].name;
-      separator = ", ";
+    if (!round_.more) break;
+    if (instant_.cycle >= kMaxCycles) {
+      report.end = RunEnd::livelock;
+      report.reason = livelock();
+      return false;
     }
-    return false;
+    run_inputs();
   }
   container_.publish_changed_statuses();
   return true;
@@ -128,7 +163,6 @@ RunReport Lockstep::run(const RunControl& control) {
   using Clock = std::chrono::steady_clock;
   RunReport report;
   stop_ = control.stop;
-  const Time end = control.limit == forever ? Time::max() : instant_.time + control.limit;
   Clock::time_point next_progress = Clock::now();
   for (unsigned steps = 0; run_one_time(report); ++steps) {
     if (round_.stop) {
@@ -145,8 +179,8 @@ RunReport Lockstep::run(const RunControl& control) {
       report.reason = "no component has a timer, so nothing would ever happen again";
       break;
     }
-    if (round_.next > end) {
-      instant_ = {end, 0};
+    if (round_.next > end_) {
+      instant_ = {end_, 0};
       report.end = RunEnd::time_limit;
       report.reason = "the time asked for has passed";
       break;
@@ -162,6 +196,7 @@ void Lockstep::end() {
   for (agree(); round_.more && instant_.cycle < kMaxCycles; agree()) run_inputs();
   for (const auto& instance : container_.instances()) instance->shutdown(instant_);
   container_.publish_changed_statuses();
+  if (together()) fences_->leave(instant_);
 }
 
 }  // namespace kervan::runtime

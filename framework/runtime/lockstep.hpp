@@ -12,17 +12,11 @@
 #include <vector>
 
 #include "framework/runtime/container.hpp"
+#include "framework/runtime/fences.hpp"
 
 namespace kervan::runtime {
 
 class WorkerPool;
-
-/// Why a run should end at the present time.
-struct StopWish {
-  RunEnd end = RunEnd::finished;  ///< finished or interrupted
-  unsigned component = 0;         ///< finished: which one wants it
-  std::string reason;
-};
 
 class Lockstep {
  public:
@@ -35,6 +29,11 @@ class Lockstep {
   /// A sample has arrived at a port of the component. From any thread, also under Cyclone's locks.
   void arrived(ComponentInstance& instance) noexcept;
 
+  /// Once all endpoints of the container exist: makes what keeps it in step with the composition's other containers, if
+  /// there are any. Throws ConfigError or DdsError.
+  void connect();
+  /// Waits for the other containers; if the run cannot begin, says why.
+  std::optional<RunReport> join(const RunControl& control);
   /// After activation: runs until one of the ends.
   RunReport run(const RunControl& control);
   /// Deactivates everybody, lets them hear each other's last words, and shuts them down.
@@ -44,20 +43,18 @@ class Lockstep {
   void advance(Time until);
 
   std::uint64_t cycles() const { return cycles_; }  ///< run so far
+  /// Which other container was lost, and where the run stood; empty if none was.
+  std::string lost() const { return fences_ ? fences_->lost() : std::string(); }
+  /// By writer index, after the end of a run in several containers.
+  std::vector<std::pair<unsigned, std::uint64_t>> traces_elsewhere() const;
 
  private:
-  /// What is known after a cycle.
-  struct Round {
-    bool more = false;        ///< something was published that somebody will hear
-    Time next = Time::max();  ///< the earliest timer or deadline; only said if there is no more
-    std::optional<StopWish> stop;
-  };
-
   bool run_one_time(RunReport& report);
   void run_due();
   void run_inputs();
   void agree();
-  void collect_batch();
+  bool together() const { return fences_ && fences_->lost().empty(); }
+  std::string livelock() const;
   Time next_due() const;
   void for_each_parallel(const std::vector<ComponentInstance*>& instances,
                          const std::function<void(ComponentInstance&)>& work);
@@ -65,6 +62,8 @@ class Lockstep {
   Container& container_;
   Instant& instant_;
   std::unique_ptr<WorkerPool> workers_;
+  std::unique_ptr<Fences> fences_;  ///< only if there are other containers
+  Time end_ = Time::max();          ///< when the time asked for is over
   Round round_;
   const std::atomic<bool>* stop_ = nullptr;
   std::uint64_t cycles_ = 0;
