@@ -86,7 +86,10 @@ Domain::Domain(const DomainConfig& config) {
   };
   domain_ = dds_create_domain(config.id, cyclone_configuration(config).c_str());
   if (domain_ < 0) fail("create the DDS domain", domain_);
-  participant_ = dds_create_participant(config.id, nullptr, nullptr);
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_userdata(qos, config.user_data.data(), config.user_data.size());
+  participant_ = dds_create_participant(config.id, qos, nullptr);
+  dds_delete_qos(qos);
   if (participant_ < 0) fail("create the DDS participant", participant_);
 }
 

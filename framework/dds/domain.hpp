@@ -27,6 +27,7 @@ struct DomainConfig {
   std::vector<std::string> peers = {};  ///< addresses to look for when the network has no multicast
   /// The domain's number on the network when it is not `id`: several domains of one process meet there like processes.
   std::optional<std::uint32_t> external_id = {};
+  std::string user_data = {};  ///< what the participant says of itself to every peer; see participant_identity()
 };
 
 /// The configuration that Cyclone is given, as XML.

@@ -79,6 +79,8 @@ struct QosDeleter {
 };
 using QosHandle = std::unique_ptr<dds_qos_t, QosDeleter>;
 
+dds_duration_t to_dds(Duration duration) { return duration == forever ? DDS_INFINITY : duration.count(); }
+
 /// Cyclone's form of what an endpoint offers or requests; `qos` is that of the whole profile.
 QosHandle cyclone_qos(const QosProfile& profile, EndpointQos qos, CyclonePart part) {
   const bool carrier = part == CyclonePart::carrier;
@@ -238,20 +240,34 @@ std::vector<MatchedPeer> Reader::matched_writers() const {
 }
 
 Writer::Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile,
-               CyclonePart part, int strength, unsigned index)
+               CyclonePart part, int strength, unsigned index, StatusSink* sink)
     : topic_(domain.topic(topic, type)) {
   const QosHandle qos = cyclone_qos(profile, offered_qos(profile), part);
   if (part == CyclonePart::whole_profile && profile.lifespan != forever)
     dds_qset_lifespan(qos.get(), profile.lifespan.count());
   dds_qset_ownership_strength(qos.get(), strength);
   set_identity(qos.get(), 'w', index, type);
-  entity_ = dds_create_writer(domain.participant(), topic_.entity, qos.get(), nullptr);
+  dds_listener_t* listener = sink ? dds_create_listener(sink) : nullptr;
+  if (listener) {
+    dds_lset_publication_matched(listener, [](dds_entity_t, dds_publication_matched_status_t, void* to) {
+      static_cast<StatusSink*>(to)->on_status();
+    });
+    dds_lset_offered_incompatible_qos(listener, [](dds_entity_t, dds_offered_incompatible_qos_status_t, void* to) {
+      static_cast<StatusSink*>(to)->on_status();
+    });
+  }
+  entity_ = dds_create_writer(domain.participant(), topic_.entity, qos.get(), listener);
+  dds_delete_listener(listener);
   if (entity_ < 0)
     throw DdsError("cannot create a writer of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));
   dds_get_instance_handle(entity_, &handle_);
 }
 
 Writer::~Writer() { dds_delete(entity_); }
+
+bool Writer::wait_for_acknowledgement(Duration patience) const {
+  return dds_wait_for_acks(entity_, to_dds(patience)) == DDS_RETCODE_OK;
+}
 
 SampleBlock* Writer::loan(bool cleared) {
   SampleBlock* block = topic_.type->pool->get(topic_.type, SDK_DATA);

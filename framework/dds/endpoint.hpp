@@ -60,17 +60,24 @@ struct Arrival {
   std::int32_t strength;   ///< the writer's ownership strength
 };
 
-/// Receives samples under Cyclone's locks, in the thread that published or that received from the network. It may only
-/// store and mark: no call back into DDS, no user code.
-class SampleSink {
+/// Told under Cyclone's locks, in whatever thread. It may only store and mark: no call back into DDS, no user code.
+class StatusSink {
+ public:
+  /// Another peer is matched, one is so no longer, or one was refused.
+  virtual void on_status() noexcept = 0;
+
+ protected:
+  ~StatusSink() = default;
+};
+
+/// Receives samples, in the thread that published or that received from the network; under the same rules.
+class SampleSink : public StatusSink {
  public:
   virtual void on_sample(const Arrival& arrival) noexcept = 0;
   /// The writer is gone or no longer alive.
   virtual void on_writer_gone(std::uint64_t writer) noexcept = 0;
   /// The writer was not alive for a whole lease; on_writer_gone() was called before.
   virtual void on_writer_lost(std::uint64_t writer) noexcept { (void)writer; }
-  /// A status of the reader changed.
-  virtual void on_status() noexcept = 0;
 
  protected:
   ~SampleSink() = default;
@@ -100,9 +107,10 @@ class Reader {
 
 class Writer {
  public:
-  /// `index` is the writer's place in the composition, the same everywhere. Throws DdsError.
+  /// `index` is the writer's place in the composition, the same everywhere; `sink`, if any, must outlive the writer.
+  /// Throws DdsError.
   Writer(Domain& domain, const std::string& topic, const TypeSupport& type, const QosProfile& profile, CyclonePart part,
-         int strength, unsigned index);
+         int strength, unsigned index, StatusSink* sink = nullptr);
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
   ~Writer();
@@ -123,6 +131,9 @@ class Writer {
   EndpointStatus status() const;
   /// All readers that are matched now. Not from a SampleSink's call.
   std::vector<MatchedPeer> matched_readers() const;
+
+  /// Waits until every reliable reader has what was published; false if that takes longer than `patience`.
+  bool wait_for_acknowledgement(Duration patience) const;
 
  private:
   void send(SampleBlock* block, Time now, std::uint32_t status);

@@ -5,12 +5,15 @@
 #include <thread>
 
 #include "framework/component/error.hpp"
+#include "framework/dds/discovery.hpp"
 #include "framework/dds/hash.hpp"
 #include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/dispatcher.hpp"
 #include "framework/runtime/lockstep.hpp"
 #include "framework/runtime/log.hpp"
+#include "framework/runtime/members.hpp"
 #include "framework/runtime/status.hpp"
+#include "framework/runtime/watch.hpp"
 
 namespace kervan::runtime {
 
@@ -33,6 +36,7 @@ std::string_view to_text(RunEnd end) {
 }
 
 Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(std::move(spec)) {
+  spec_.domain.user_data = dds::to_user_data({spec_.name, composition_hash(spec_)});
   domain_ = std::make_unique<dds::Domain>(spec_.domain);
   log_sinks_ =
       std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder, spec_.publish_log ? domain_.get() : nullptr);
@@ -59,10 +63,17 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(st
     first.writer += static_cast<unsigned>(instances_.back()->outputs().size());
     first.reader += static_cast<unsigned>(instances_.back()->inputs().size());
   }
-  if (lockstep_) lockstep_->connect();
+  if (lockstep_) {
+    lockstep_->connect();
+    return;
+  }
+  if (spec_.members.size() > 1) members_ = std::make_unique<Members>(*domain_, spec_, [this] { bell_.ring(); });
+  watch_ = std::make_unique<Watch>(*this, bell_, [this] { hear_members(); });
 }
 
 Container::~Container() {
+  watch_.reset();
+  members_.reset();
   instances_.clear();
   status_writer_.reset();
   log_sinks_.reset();
@@ -203,9 +214,21 @@ RunReport Container::run(const RunControl& control) {
   if (lockstep_) {
     if (const auto impossible = lockstep_->join(control)) return *impossible;
   }
-  activate();
-  RunReport report = lockstep_ ? lockstep_->run(control) : run_wall(control);
-  end();
+  RunReport report;
+  if (const std::optional<RunReport> ended = wait_for_peers(control)) {
+    report = *ended;
+  } else {
+    activate();
+    if (members_) members_->publish(kervan_msgs::msg::ContainerPhase::CONTAINER_ACTIVE, {}, instant_.time);
+    if (control.phase) control.phase(RunPhase::active);
+    report = lockstep_ ? lockstep_->run(control) : run_wall(control);
+    end();
+  }
+  // Neither a limit of time nor an interruption of this container ends the others' runs.
+  if (members_ && report.end == RunEnd::finished) {
+    members_->publish(kervan_msgs::msg::ContainerPhase::CONTAINER_FINISHED, report.reason, instant_.time);
+    members_->wait_until_heard();
+  }
   report.ended_at = instant_.time;
   if (lockstep_) {
     report.cycles = lockstep_->cycles();

@@ -14,6 +14,7 @@
 
 #include "framework/component/registry.hpp"
 #include "framework/dds/endpoint.hpp"
+#include "framework/runtime/bell.hpp"
 #include "framework/runtime/instance.hpp"
 #include "framework/runtime/spec.hpp"
 
@@ -22,8 +23,10 @@ namespace kervan::runtime {
 class Dispatcher;
 class Lockstep;
 class LogSinks;
+class Members;
 class StatusWriter;
 struct StopWish;
+class Watch;
 
 /// How a run ended.
 enum class RunEnd {
@@ -43,11 +46,18 @@ struct RunReport {
   std::uint64_t cycles = 0;  ///< delta cycles run
 };
 
+/// How far a run is before it runs.
+enum class RunPhase {
+  matched,  ///< this container's ports are matched with those of all other containers
+  active,   ///< so are all others', and every component is active
+};
+
 struct RunControl {
   Duration limit = forever;                            ///< on the composition's clock, from the start of the run
   const std::atomic<bool>* stop = nullptr;             ///< ends the run in good order when set
   Duration members_within = std::chrono::seconds(30);  ///< lockstep: wall time in which the other containers must come
   std::function<void(Time)> progress = {};             ///< called about ten times a second of wall time
+  std::function<void(RunPhase)> phase = {};            ///< called when the run reaches it
 };
 
 class Container {
@@ -59,7 +69,8 @@ class Container {
   Container(const Container&) = delete;
   Container& operator=(const Container&) = delete;
 
-  /// Activates every component, runs until one of the ends, deactivates and shuts them down.
+  /// Waits for the other containers, activates every component, runs until one of the ends, deactivates and shuts them
+  /// down.
   RunReport run(const RunControl& control);
 
   // The same in pieces, for tests under lockstep.
@@ -85,6 +96,7 @@ class Container {
 
   // Used by the ports and instances.
   void input_ready(InputPort& port) noexcept;
+  Bell& bell() { return bell_; }  ///< to be rung when a port's peers change
   void request_finish(unsigned component, std::string why);
   /// The place in the composition of a writer that `port` has had samples of; ~0u if it has none.
   unsigned writer_index(const InputPort& port, std::uint64_t handle);
@@ -92,6 +104,10 @@ class Container {
   std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
 
  private:
+  /// Under the clocks wall and sim: until this container's ports are matched and all other containers say the same of
+  /// theirs. A report, if the run ended before that.
+  std::optional<RunReport> wait_for_peers(const RunControl& control);
+  void hear_members();
   RunReport run_wall(const RunControl& control);
   RunReport supervise(const RunControl& control);
 
@@ -101,9 +117,12 @@ class Container {
   std::unique_ptr<dds::Domain> domain_;
   std::unique_ptr<LogSinks> log_sinks_;
   std::unique_ptr<StatusWriter> status_writer_;
+  Bell bell_;
+  std::unique_ptr<Members> members_;  ///< not under lockstep, nor in a composition of one container
   std::mutex writer_indices_mutex_;
   std::map<std::uint64_t, unsigned> writer_indices_;  ///< by Cyclone's instance handle; under the mutex
   std::vector<std::unique_ptr<ComponentInstance>> instances_;
+  std::unique_ptr<Watch> watch_;  ///< not under lockstep
   std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
   std::unique_ptr<Lockstep> lockstep_;
   std::atomic<bool> finish_requested_{false};

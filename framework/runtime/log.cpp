@@ -41,7 +41,7 @@ class RosoutSink final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   explicit RosoutSink(dds::Domain& domain)
       : writer_(domain, "/rosout", type_support<rcl_interfaces::msg::Log>(), profile(), dds::CyclonePart::whole_profile,
-                0, 0) {}
+                0, dds::kInternal) {}
 
  private:
   static QosProfile profile() {

@@ -125,6 +125,11 @@ std::vector<CountedWriters::Writer> InputPort::counted_writers() const {
   return writers;
 }
 
+void InputPort::on_status() noexcept {
+  health_.mark_changed();
+  owner_.container().bell().ring();
+}
+
 PortCounters InputPort::counters() const {
   PortCounters counters = cache_.counters();
   lock();
@@ -214,7 +219,7 @@ OutputPort::OutputPort(OutputBase& output, const PortBinding& binding, Component
       traced_(clock == ClockMode::lockstep && binding.profile.trace && output.info().qos.traced()),
       keeps_last_(clock != ClockMode::wall && binding.profile.liveliness == Liveliness::manual),
       writer_(domain, binding.topic, output.type(), binding.profile, part_of(clock), output.info().qos.strength(),
-              index) {
+              index, this) {
   output.port_ = this;
 }
 
@@ -232,6 +237,11 @@ void OutputPort::assert_alive() {
   dds::SampleBlock* repeated = writer_.loan(false);
   type().copy(dds::mutable_value_of(repeated), dds::value_of(last_));
   publish(repeated, Operation::assertion);
+}
+
+void OutputPort::on_status() noexcept {
+  health_.mark_changed();
+  owner_.container().bell().ring();
 }
 
 void OutputPort::publish(dds::SampleBlock* block, Operation operation) {

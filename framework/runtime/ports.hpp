@@ -9,6 +9,7 @@
 #include "framework/component/ports.hpp"
 #include "framework/dds/endpoint.hpp"
 #include "framework/runtime/counted_writers.hpp"
+#include "framework/runtime/port_health.hpp"
 #include "framework/runtime/sample_cache.hpp"
 #include "framework/runtime/spec.hpp"
 
@@ -25,6 +26,7 @@ struct Instant {
 
 class InputPort final : public dds::SampleSink {
  public:
+  /// `index` is the reader's place in the composition.
   InputPort(InputBase& input, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
             ClockMode clock, unsigned index);
   ~InputPort();
@@ -37,6 +39,9 @@ class InputPort final : public dds::SampleSink {
   ComponentInstance& owner() { return owner_; }
   unsigned index() const { return index_; }  ///< of the reader, in the whole composition
   const dds::Reader& reader() const { return *reader_; }
+  std::vector<dds::MatchedPeer> matched() const { return reader_->matched_writers(); }
+  PortHealth& health() { return health_; }
+  const PortHealth& health() const { return health_; }
   bool has_handler() const { return static_cast<bool>(input_.deliver_); }
   PortCounters counters() const;
 
@@ -65,7 +70,7 @@ class InputPort final : public dds::SampleSink {
   void on_sample(const dds::Arrival& arrival) noexcept override;
   void on_writer_gone(std::uint64_t writer) noexcept override;
   void on_writer_lost(std::uint64_t writer) noexcept override;
-  void on_status() noexcept override {}
+  void on_status() noexcept override;
 
  private:
   void lock() const noexcept {
@@ -97,12 +102,13 @@ class InputPort final : public dds::SampleSink {
   std::vector<StagedSample> staged_;      ///< scratch of stage()
   std::vector<dds::SampleBlock*> given_;  ///< taken by the component, kept alive until it takes again
   std::atomic<bool> ready_{false};
+  PortHealth health_;
   std::unique_ptr<dds::Reader> reader_;  ///< last: it calls into the members above
 
   friend class ComponentInstance;
 };
 
-class OutputPort {
+class OutputPort final : public dds::StatusSink {
  public:
   OutputPort(OutputBase& output, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
              ClockMode clock, unsigned index);
@@ -113,6 +119,9 @@ class OutputPort {
   const PortBinding& binding() const { return binding_; }
   unsigned index() const { return index_; }  ///< of the writer, in the whole composition
   const dds::Writer& writer() const { return writer_; }
+  std::vector<dds::MatchedPeer> matched() const { return writer_.matched_readers(); }
+  PortHealth& health() { return health_; }
+  const PortHealth& health() const { return health_; }
   std::uint64_t published() const { return sequence_; }
   /// The chain over everything published so far; 0 while untraced.
   std::uint64_t trace() const { return trace_; }
@@ -122,6 +131,8 @@ class OutputPort {
   void publish(dds::SampleBlock* block, Operation operation);
   /// Under a logical clock, where DDS knows no lease, it travels as a repetition of the last sample.
   void assert_alive();
+
+  void on_status() noexcept override;
 
  private:
   OutputBase& output_;
@@ -133,7 +144,8 @@ class OutputPort {
   std::uint64_t trace_ = 0;
   dds::SampleBlock* last_ = nullptr;  ///< published last, if an assertion has to repeat it
   bool keeps_last_;
-  dds::Writer writer_;
+  PortHealth health_;
+  dds::Writer writer_;  ///< last: it calls into the members above
 };
 
 }  // namespace kervan::runtime

@@ -22,13 +22,11 @@ kervan_msgs::msg::ComponentState to_message(ComponentState state) {
 
 }  // namespace
 
-QosProfile status_profile() {
-  return {.name = "status", .durability = Durability::transient_local, .trace = false};
-}
+QosProfile status_profile() { return {.name = "status", .durability = Durability::transient_local, .trace = false}; }
 
 StatusWriter::StatusWriter(dds::Domain& domain)
     : writer_(domain, kStatusTopic, type_support<kervan_msgs::msg::ComponentStatus>(), status_profile(),
-              dds::CyclonePart::whole_profile, 0, 0) {}
+              dds::CyclonePart::whole_profile, 0, dds::kInternal) {}
 
 void StatusWriter::publish(const ComponentInstance& instance, const std::string& container, Time now) {
   const std::lock_guard lock(mutex_);

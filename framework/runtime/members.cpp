@@ -1,0 +1,107 @@
+#include "framework/runtime/members.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+
+#include "framework/component/sample.hpp"
+#include "framework/dds/hash.hpp"
+#include "framework/dds/type_support.hpp"
+#include "framework/geometry/messages.hpp"
+
+namespace kervan::runtime {
+
+namespace {
+
+using kervan_msgs::msg::ContainerStatus;
+
+/// How long the end of a run may wait for containers that have not heard of it.
+constexpr Duration kPatience = std::chrono::milliseconds(500);
+
+QosProfile members_profile() {
+  return {.name = "containers", .durability = Durability::transient_local, .trace = false};
+}
+
+std::string host_name() {
+  char name[256] = {};
+  return gethostname(name, sizeof name - 1) == 0 ? name : "";
+}
+
+}  // namespace
+
+std::uint64_t composition_hash(const ContainerSpec& spec) {
+  Hash64 hash;
+  hash.number(static_cast<int>(spec.clock));
+  for (const ComponentSpec& component : spec.components) {
+    if (component.container.empty()) continue;  // this container's own addition
+    hash.text(component.name);
+    hash.text(component.type);
+    for (const PortBinding& port : component.ports) {
+      hash.text(port.port);
+      hash.text(port.topic);
+      hash.number(static_cast<int>(port.direction));
+      hash.text(port.type);
+      hash.number(port.layout_hash);
+      hash.number(static_cast<int>(port.profile.reliability));
+      hash.number(static_cast<int>(port.profile.durability));
+      hash.number(port.profile.depth);
+      hash.number(port.profile.deadline.count());
+      hash.number(port.profile.lifespan.count());
+      hash.number(static_cast<int>(port.profile.ownership));
+    }
+  }
+  return hash.value();
+}
+
+Members::Members(dds::Domain& domain, const ContainerSpec& spec, std::function<void()> changed)
+    : changed_(std::move(changed)),
+      writer_(domain, kContainersTopic, type_support<ContainerStatus>(), members_profile(),
+              dds::CyclonePart::whole_profile, 0, dds::kInternal),
+      reader_(domain, kContainersTopic, type_support<ContainerStatus>(), members_profile(),
+              dds::CyclonePart::whole_profile, *this) {
+  own_.container = spec.name;
+  own_.host = host_name();
+  own_.pid = getpid();
+  own_.composition = composition_hash(spec);
+}
+
+Members::~Members() = default;
+
+void Members::publish(kervan_msgs::msg::ContainerPhase phase, const std::string& reason, Time now) {
+  own_.phase = phase;
+  own_.reason = reason;
+  own_.stamp = geometry::to_message(now);
+  dds::SampleBlock* const block = writer_.loan(false);
+  *static_cast<ContainerStatus*>(dds::mutable_value_of(block)) = own_;
+  writer_.publish(block, now, false);
+}
+
+void Members::wait_until_heard() const { writer_.wait_for_acknowledgement(kPatience); }
+
+std::map<std::string, ContainerStatus> Members::others() const {
+  std::map<std::string, ContainerStatus> others;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, heard] : heard_) others.emplace(name, heard.status);
+  return others;
+}
+
+void Members::on_sample(const dds::Arrival& arrival) noexcept {
+  if (arrival.writer == writer_.handle() || dds::is_disposed(arrival.block)) return;
+  const auto& status = *static_cast<const ContainerStatus*>(dds::value_of(arrival.block));
+  {
+    const std::lock_guard lock(mutex_);
+    heard_.insert_or_assign(status.container, Heard{arrival.writer, status});
+  }
+  changed_();
+}
+
+void Members::on_writer_gone(std::uint64_t writer) noexcept {
+  {
+    // A container that was restarted has spoken through another writer since, and is there.
+    const std::lock_guard lock(mutex_);
+    std::erase_if(heard_, [&](const auto& entry) { return entry.second.writer == writer; });
+  }
+  changed_();
+}
+
+}  // namespace kervan::runtime

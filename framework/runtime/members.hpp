@@ -1,0 +1,59 @@
+/// How far the containers of a composition are: each publishes its kervan_msgs/msg/ContainerStatus on
+/// /kervan/containers and hears the others'.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <string>
+
+#include "framework/dds/endpoint.hpp"
+#include "framework/runtime/spec.hpp"
+#include "kervan_msgs/msg/ContainerStatus.hpp"
+
+namespace kervan::runtime {
+
+inline constexpr const char* kContainersTopic = "/kervan/containers";
+
+/// The same for two specs whose components, ports, topics and profiles are the same, whatever runs where and with which
+/// parameters: files of one computer have other paths on another.
+std::uint64_t composition_hash(const ContainerSpec& spec);
+
+class Members final : public dds::SampleSink {
+ public:
+  /// `changed` is called under Cyclone's locks when another container's status came or went. Throws DdsError.
+  Members(dds::Domain& domain, const ContainerSpec& spec, std::function<void()> changed);
+  ~Members();
+
+  /// Says how far this container is.
+  void publish(kervan_msgs::msg::ContainerPhase phase, const std::string& reason, Time now);
+
+  /// Waits until all others have heard it, but not for one that does not answer.
+  void wait_until_heard() const;
+
+  /// The latest word of every other container that is there, members or not, by name.
+  std::map<std::string, kervan_msgs::msg::ContainerStatus> others() const;
+
+  /// Hash of what this container's composition consists of.
+  std::uint64_t composition() const { return own_.composition; }
+
+  void on_sample(const dds::Arrival& arrival) noexcept override;
+  void on_writer_gone(std::uint64_t writer) noexcept override;
+  void on_status() noexcept override {}
+
+ private:
+  struct Heard {
+    std::uint64_t writer;
+    kervan_msgs::msg::ContainerStatus status;
+  };
+
+  std::function<void()> changed_;
+  kervan_msgs::msg::ContainerStatus own_;
+  mutable std::mutex mutex_;
+  std::map<std::string, Heard> heard_;  ///< under the mutex, by container
+  dds::Writer writer_;
+  dds::Reader reader_;  ///< last: it calls into the members above
+};
+
+}  // namespace kervan::runtime

@@ -1,0 +1,37 @@
+/// How a port gets on with its peers: the watch finds out and writes, the status and tests read.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <string>
+#include <utility>
+
+namespace kervan::runtime {
+
+class PortHealth {
+ public:
+  /// A peer came, went or was refused; from any thread, also under Cyclone's locks.
+  void mark_changed() noexcept { changed_.store(true, std::memory_order_release); }
+  /// Whether that happened since the last call.
+  bool take_changed() noexcept { return changed_.exchange(false, std::memory_order_acquire); }
+
+  /// What is wrong with its peers now, one sentence each; empty while all is well.
+  std::string trouble() const {
+    const std::lock_guard lock(mutex_);
+    return trouble_;
+  }
+  /// True if that is news.
+  bool set_trouble(std::string trouble) {
+    const std::lock_guard lock(mutex_);
+    if (trouble_ == trouble) return false;
+    trouble_ = std::move(trouble);
+    return true;
+  }
+
+ private:
+  std::atomic<bool> changed_{true};
+  mutable std::mutex mutex_;
+  std::string trouble_;
+};
+
+}  // namespace kervan::runtime
