@@ -48,6 +48,9 @@ std::uint64_t composition_hash(const ContainerSpec& spec) {
       hash.number(port.profile.deadline.count());
       hash.number(port.profile.lifespan.count());
       hash.number(static_cast<int>(port.profile.ownership));
+      hash.number(static_cast<int>(port.profile.liveliness));
+      hash.number(port.profile.lease.count());
+      for (const std::string& partition : port.profile.partition) hash.text(partition);
     }
   }
   return hash.value();
