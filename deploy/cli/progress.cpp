@@ -42,6 +42,18 @@ void Progress::show(Duration simulated) {
   std::fflush(stderr);
 }
 
+void Progress::say(const std::string& text) {
+  std::fputs(((terminal_ && shown_ ? "\r\033[K" : "") + text + "\n").c_str(), stderr);
+  shown_ = false;
+}
+
+void Progress::say_for_now(const std::string& text) {
+  if (!terminal_) return say(text);
+  std::fputs(("\r" + text + "\033[K").c_str(), stderr);
+  std::fflush(stderr);
+  shown_ = true;
+}
+
 void Progress::finish(Duration simulated, double wall_s) {
   if (!terminal_) return;
   std::fputs((line(simulated, wall_s) + "\n").c_str(), stderr);

@@ -18,6 +18,10 @@ class Progress {
 
   void show(Duration simulated);
 
+  /// A line that stays, or on a terminal one that the next call replaces.
+  void say(const std::string& text);
+  void say_for_now(const std::string& text);
+
   /// The run is over: on a terminal the bar stays as it was at the end, with the speed of the whole run.
   void finish(Duration simulated, double wall_s);
 

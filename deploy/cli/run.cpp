@@ -13,6 +13,7 @@
 #include "deploy/cli/print_json.hpp"
 #include "deploy/cli/progress.hpp"
 #include "deploy/cli/run_composition.hpp"
+#include "deploy/cli/table.hpp"
 #include "deploy/cli/verbs.hpp"
 
 namespace kervan::cli {
@@ -61,16 +62,6 @@ Duration mission_timeout(const ResolvedComposition& composition) {
     if (const auto* s = std::get_if<double>(&timeout)) return from_seconds(*s);
   }
   return forever;
-}
-
-void require_runnable(const ResolvedComposition& composition) {
-  const auto& source = composition.source;
-  if (source.containers.size() > 1)
-    throw ConfigError(source.containers[1].location,
-                      "this version runs a composition in one container, and this one has " +
-                          std::to_string(source.containers.size()) + "; add --place all to run them as one");
-  if (source.clock.mode == composition::ClockMode::sim)
-    throw ConfigError(source.clock.location, "this version cannot run under clock sim; write lockstep or wall");
 }
 
 /// Takes back the folders of a run that did not come about: `folder` with what is in it, and the empty ones above it
@@ -129,13 +120,19 @@ ordered_json summary(const RunOutcome& outcome) {
                     {"time_s", rounded(robot.time_s)}, {"path_m", rounded(robot.path_m)},
                     {"contacts", robot.contacts},      {"min_clearance_m", clearance}};
   }
-  ordered_json object = {{"result", to_text(outcome.result)},
-                         {"robots", robots},
-                         {"trace_hash", outcome.trace_hash},
-                         {"simulated_s", rounded(outcome.simulated_s)},
-                         {"wall_s", rounded(outcome.wall_s)}};
+  ordered_json containers = ordered_json::array();
+  for (const auto& container : outcome.containers)
+    containers.push_back({{"name", container.name},
+                          {"pid", container.pid},
+                          {"restarts", container.restarts},
+                          {"exit", container.exit},
+                          {"worst_latency_s", container.counters.worst_latency_s},
+                          {"missed_deadlines", container.counters.missed_deadlines}});
+  ordered_json object = {{"result", to_text(outcome.result)}, {"robots", robots},
+                         {"trace_hash", outcome.trace_hash},  {"simulated_s", rounded(outcome.simulated_s)},
+                         {"wall_s", rounded(outcome.wall_s)}, {"containers", containers}};
   if (outcome.result != RunResult::success) object["reason"] = outcome.reason;
-  if (signal_seen != 0) object["interrupted"] = true;
+  if (outcome.signal != 0) object["interrupted"] = true;
   return object;
 }
 
@@ -167,9 +164,20 @@ void print_result(std::ostream& out, const RunOutcome& outcome, const fs::path& 
   out << "\n  " << folder.string() << "/\n";
 }
 
+/// How each process did. A run in this process has none of its own.
+void print_containers(std::ostream& out, const RunOutcome& outcome) {
+  std::vector<std::vector<std::string>> rows = {
+      {"container", "pid", "restarts", "exit", "worst latency", "missed deadlines"}};
+  for (const auto& container : outcome.containers)
+    rows.push_back({container.name, std::to_string(container.pid), std::to_string(container.restarts), container.exit,
+                    decimal(container.counters.worst_latency_s * 1e3, 1) + " ms",
+                    std::to_string(container.counters.missed_deadlines)});
+  print_table(out, rows, "  ");
+}
+
 int exit_code(const RunOutcome& outcome) {
-  if (signal_seen == SIGINT) return exit_interrupt;
-  if (signal_seen != 0) return exit_terminated;
+  if (outcome.signal == SIGINT) return exit_interrupt;
+  if (outcome.signal != 0) return exit_terminated;
   return outcome.result == RunResult::success ? exit_good : exit_found;
 }
 
@@ -181,10 +189,12 @@ int run(const RunRequest& request) {
   ComponentRegistry registry(component_folders());
   const ResolvedComposition composition = prepare(request, registry);
   require_usable(composition);
-  require_runnable(composition);
 
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
+  const bool here = runs_here(composition);
+  if (here) {  // elsewhere the supervisor takes them
+    std::signal(SIGINT, on_signal);
+    std::signal(SIGTERM, on_signal);
+  }
   const std::vector<fs::path> made = missing(request.runs_folder);
   RunOptions options;
   options.time_limit = limit;
@@ -195,7 +205,11 @@ int run(const RunRequest& request) {
   try {
     options.run_folder = make_run_folder(request.runs_folder, composition.source.name);
     Progress progress(std::min(limit, mission_timeout(composition)), isatty(STDERR_FILENO) == 1);
-    outcome = run_composition(composition, registry, options, [&](Duration simulated) { progress.show(simulated); });
+    outcome = run_composition(composition, registry, options,
+                              {.progress = [&](Duration simulated) { progress.show(simulated); },
+                               .say = [&](const std::string& text) { progress.say(text); },
+                               .waiting = [&](const std::string& text) { progress.say_for_now(text); }});
+    if (here) outcome.signal = signal_seen;
     progress.finish(from_seconds(outcome.simulated_s), outcome.wall_s);
   } catch (...) {
     // A failing handler fails its component, not the run: this is a container that could not be made. Leave nothing
@@ -205,7 +219,9 @@ int run(const RunRequest& request) {
   }
   const ordered_json object = summary(outcome);
   write_summary(options.run_folder, object);
-  print_result(request.json ? std::cerr : std::cout, outcome, options.run_folder);
+  std::ostream& out = request.json ? std::cerr : std::cout;
+  print_result(out, outcome, options.run_folder);
+  if (!here) print_containers(out, outcome);
   if (request.json) print_json(object);
   return exit_code(outcome);
 }

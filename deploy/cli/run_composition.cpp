@@ -1,147 +1,86 @@
-// From a resolved composition to a container, and from its mission's result to an outcome.
 #include "deploy/cli/run_composition.hpp"
 
-#include <chrono>
-#include <cmath>
-#include <cstdio>
+#include <unistd.h>
 
-#include "framework/component/component.hpp"
+#include <chrono>
+
+#include "deploy/container/mission_listener.hpp"
+#include "deploy/container/specification.hpp"
 #include "framework/runtime/container.hpp"
-#include "kervan_msgs/msg/MissionResult.hpp"
 
 namespace kervan::cli {
 namespace {
 
-using kervan_msgs::msg::MissionOutcome;
-using kervan_msgs::msg::MissionResult;
+namespace fs = std::filesystem;
 
-constexpr const char* kMissionResultType = "kervan_msgs::msg::MissionResult";
-
-/// Hears how the mission ended. It runs as the last component of the container and publishes nothing, so the run is the
-/// same with and without it.
-class MissionListener final : public Component {
-  Input<MissionResult> result_{this, "result", qos::latched, &MissionListener::on_result, "How the mission ended."};
-  void on_result(const MissionResult& result, Time) { heard = result; }
-
- public:
-  static inline std::optional<MissionResult> heard;
-};
-
-const ComponentClass mission_listener{
-    "kervan/mission_listener", "Hears how the mission ended.",
-    []() -> std::unique_ptr<Component> { return std::make_unique<MissionListener>(); }};
-
-runtime::ContainerSpec container_spec(const composition::ResolvedComposition& composition, const RunOptions& options) {
-  runtime::ContainerSpec spec;
-  const composition::Container& container = composition.source.containers.front();
-  spec.name = container.name;
-  spec.clock = composition.source.clock.mode == composition::ClockMode::lockstep ? runtime::ClockMode::lockstep
-                                                                                 : runtime::ClockMode::wall;
-  spec.threads = options.threads != 0 ? options.threads : static_cast<unsigned>(container.threads);
-  spec.domain.id = static_cast<std::uint32_t>(composition.source.domain.id);
-  // A lockstep run in one container needs no network, and nobody may disturb it.
-  spec.domain.network = spec.clock == runtime::ClockMode::wall;
-  if (!composition.source.domain.hosts.empty() && !composition.source.domain.hosts.front().interface.empty())
-    spec.domain.interface = composition.source.domain.hosts.front().interface;
-  spec.run_folder = options.run_folder;
-  spec.log_to_console = options.log_to_console;
-  for (const composition::ResolvedComponent& component : composition.components) {
-    runtime::ComponentSpec& target = spec.components.emplace_back();
-    target.name = component.name;
-    target.type = component.manifest.type;
-    target.parameters = component.parameters;
-    target.log_level = component.log_level;
-    for (const composition::ResolvedPort& port : component.ports)
-      target.ports.push_back({.port = port.info.name,
-                              .topic = port.topic,
-                              .profile = composition.topics.at(port.topic).qos.profile,
-                              .direction = port.info.direction,
-                              .type = port.info.type,
-                              .layout_hash = port.info.layout_hash,
-                              .optional = port.info.qos.is_optional()});
-  }
-  for (const auto& [name, topic] : composition.topics) {
-    if (topic.type != kMissionResultType || topic.writers.empty()) continue;
-    spec.components.push_back({.name = "kervan/mission_listener",
-                               .type = mission_listener.type,
-                               .ports = {{.port = "result", .topic = name, .profile = topic.qos.profile}}});
-    break;
-  }
-  return spec;
+/// A run under lockstep in several containers meets nobody else: the processes of one host agree on the supervisor's
+/// number, those of several hosts on the composition's name.
+std::string tag_of(const composition::ResolvedComposition& composition) {
+  for (const composition::Host& host : composition.source.domain.hosts)
+    if (!host.address.empty()) return composition.source.name;
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return composition.source.name + "-" + std::to_string(::getpid()) + "-" + std::to_string(now.count());
 }
 
-/// The components that failed on the way, as one sentence; empty if none did.
-std::string failures(const runtime::Container& container) {
-  std::string text;
-  for (const auto& instance : container.instances())
-    if (instance->state() == ComponentState::failed)
-      text += (text.empty() ? "" : "; ") + instance->name() + " failed: " + instance->reason();
-  return text;
+/// The program beside this one.
+fs::path container_program() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path program = folder / "kervan-container";
+  if (error || ::access(program.c_str(), X_OK) != 0)
+    throw ConfigError({program.string(), 0, 0}, "cannot be started; it belongs beside the program kervan");
+  return program;
 }
 
-void judge(RunOutcome& outcome, const runtime::RunReport& report, const std::string& failed) {
-  using runtime::RunEnd;
-  outcome.reason = report.reason;
-  const std::optional<MissionResult>& mission = MissionListener::heard;
-  if (mission) {
-    for (const auto& robot : mission->robots) {
-      RobotOutcome& target = outcome.robots[robot.robot];
-      target.reached = robot.reached;
-      target.error_m = robot.error_m;
-      target.time_s = robot.time_s;
-      target.path_m = robot.path_m;
-      target.contacts = robot.contacts;
-      if (std::isfinite(robot.min_clearance_m)) target.min_clearance_m = robot.min_clearance_m;
-    }
-    outcome.reason = mission->result != MissionOutcome::MISSION_ABORTED ? mission->reason
-                     : report.end == RunEnd::time_limit  ? "the time asked for was over before the mission was"
-                     : report.end == RunEnd::interrupted ? "interrupted before the mission was over"
-                                                         : mission->reason;
-    outcome.result = mission->result == MissionOutcome::MISSION_SUCCESS  ? RunResult::success
-                     : mission->result == MissionOutcome::MISSION_FAILED ? RunResult::failed
-                                                                         : RunResult::aborted;
-  } else {
-    const bool good = report.end == RunEnd::finished || report.end == RunEnd::time_limit;
-    outcome.result = good && failed.empty() ? RunResult::success : RunResult::aborted;
-  }
-  if (report.end == RunEnd::livelock || report.end == RunEnd::idle) {
-    outcome.result = RunResult::aborted;
-    outcome.reason = report.reason;
-  }
-  if (!failed.empty()) outcome.reason = outcome.reason.empty() ? failed : outcome.reason + "; " + failed;
-}
-
-}  // namespace
-
-RunOutcome run_composition(const composition::ResolvedComposition& composition, ComponentRegistry& registry,
-                           const RunOptions& options, const ProgressCallback& progress) {
-  registry.add(mission_listener);
-  MissionListener::heard.reset();
-  runtime::Container container(container_spec(composition, options), registry);
-
+supervisor::SupervisedRun run_here(const runtime::ContainerSpec& spec, ComponentRegistry& registry,
+                                   const RunOptions& options, const RunEvents& events) {
   using Clock = std::chrono::steady_clock;
-  const Clock::time_point wall_start = Clock::now();
-  std::optional<Time> start;
+  container::add_mission_listener(registry);
+  runtime::Container container(spec, registry);
   runtime::RunControl control;
   control.limit = options.time_limit;
   control.stop = options.stop;
   control.progress = [&](Time now) {
-    if (!start) start = now;
-    if (progress) progress(now - *start);
+    if (events.progress) events.progress(now.time_since_epoch());
   };
-  const runtime::RunReport report = container.run(control);
+  supervisor::SupervisedRun run;
+  const Clock::time_point start = Clock::now();
+  run.reports.push_back(container::run_to_end(container, control));
+  run.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  run.containers.push_back({spec.name, ::getpid(), 0, "", run.reports.front().counters});
+  return run;
+}
 
-  RunOutcome outcome;
-  outcome.wall_s = std::chrono::duration<double>(Clock::now() - wall_start).count();
-  const bool lockstep = container.spec().clock == runtime::ClockMode::lockstep;
-  outcome.simulated_s = lockstep ? seconds(report.ended_at) : outcome.wall_s;
-  if (lockstep) {
-    char hash[17];
-    std::snprintf(hash, sizeof hash, "%016llx", static_cast<unsigned long long>(container.trace_hash()));
-    outcome.trace_hash = hash;
-  }
-  judge(outcome, report, failures(container));
-  return outcome;
+supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition& composition,
+                                         std::vector<runtime::ContainerSpec> specs, const RunOptions& options,
+                                         const RunEvents& events) {
+  supervisor::SupervisorConfig config;
+  config.program = container_program();
+  config.spec_folder = options.run_folder;
+  config.limit = options.time_limit;
+  for (std::size_t i = 0; i < specs.size(); ++i)
+    config.containers.push_back({std::move(specs[i]), composition.source.containers[i].restart});
+  supervisor::Supervisor supervisor(std::move(config), {events.say, events.waiting, events.progress});
+  return supervisor.run();
+}
+
+}  // namespace
+
+bool runs_here(const composition::ResolvedComposition& composition) {
+  return composition.source.containers.size() == 1 && composition.source.clock.mode == composition::ClockMode::lockstep;
+}
+
+RunOutcome run_composition(const composition::ResolvedComposition& composition, ComponentRegistry& registry,
+                           const RunOptions& options, const RunEvents& events) {
+  const bool here = runs_here(composition);
+  auto specs = container::specifications(composition, {.run_folder = fs::absolute(options.run_folder),
+                                                       .threads = options.threads,
+                                                       .log_to_console = options.log_to_console,
+                                                       .tag = here ? "" : tag_of(composition)});
+  const supervisor::SupervisedRun run = here ? run_here(specs.front(), registry, options, events)
+                                             : run_supervised(composition, std::move(specs), options, events);
+  if (run.unusable) throw ConfigError({}, run.aborted);
+  return judge(run);
 }
 
 }  // namespace kervan::cli

@@ -31,6 +31,7 @@ struct Host {
 
 struct Domain {
   int id = 0;
+  std::string tag;  ///< only those with the same tag see each other; empty: all without one
   std::vector<Host> hosts;
 };
 
@@ -55,10 +56,15 @@ struct TopicEntry {
   config::Node settings;  ///< `qos`, `external` and the values
 };
 
-enum class RestartPolicy { never, on_failure, always };
+enum class RestartPolicy {
+  never,
+  on_failure,  ///< after a crash, a kill, a hang
+  always,      ///< also when the container was ended from outside
+};
 
+/// What becomes of a container whose process ended before the run did. Under clock lockstep none is started again.
 struct Restart {
-  RestartPolicy policy = RestartPolicy::never;
+  RestartPolicy policy = RestartPolicy::on_failure;
   int max = 5;  ///< more restarts than this within `window` end the attempts
   Duration window = std::chrono::seconds(30);
   Duration backoff = std::chrono::milliseconds(100);  ///< before the first restart; doubled for each one after it

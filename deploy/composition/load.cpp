@@ -45,7 +45,7 @@ Clock read_clock(const Node& node) {
 }
 
 Domain read_domain(const Node& node) {
-  node.only_keys({"id", "hosts"});
+  node.only_keys({"id", "tag", "hosts"});
   Domain domain;
   if (const Node* id = node.optional("id")) {
     const std::int64_t value = id->as_integer();
@@ -53,6 +53,7 @@ Domain read_domain(const Node& node) {
     if (value < 0 || value > 232) id->fail(id->shown() + " is out of range; allowed: 0 .. 232");
     domain.id = static_cast<int>(value);
   }
+  if (const Node* tag = node.optional("tag")) domain.tag = tag->as_text();
   if (const Node* hosts = node.optional("hosts")) {
     for (const Node& host : hosts->map()) {
       require_name(host, "host");
@@ -66,18 +67,32 @@ Domain read_domain(const Node& node) {
 }
 
 Restart read_restart(const Node& node) {
-  node.only_keys({"policy", "max", "window"});
+  node.only_keys({"policy", "max", "window", "quarantine"});
   Restart restart;
-  const std::string policy = node.required("policy").as_choice({"never", "on-failure", "always"});
-  restart.policy = policy == "never"        ? RestartPolicy::never
-                   : policy == "on-failure" ? RestartPolicy::on_failure
-                                            : RestartPolicy::always;
+  const std::string policy = node.required("policy").as_choice({"never", "on-failure", "always", "quarantine"});
+  restart.policy = policy == "never"    ? RestartPolicy::never
+                   : policy == "always" ? RestartPolicy::always
+                                        : RestartPolicy::on_failure;
   if (const Node* max = node.optional("max")) {
     const std::int64_t value = max->as_integer();
     if (value < 1 || value > 1000) max->fail(max->shown() + " is out of range; allowed: 1 .. 1000");
     restart.max = static_cast<int>(value);
   }
-  if (const Node* window = node.optional("window")) restart.window = window->as_duration();
+  if (const Node* window = node.optional("window")) {
+    restart.window = window->as_duration();
+    if (restart.window <= Duration::zero()) window->fail(window->shown() + " is out of range; allowed: more than 0 s");
+  }
+  if (policy == "quarantine") restart.quarantine = std::min(3, restart.max);
+  if (const Node* quarantine = node.optional("quarantine")) {
+    if (policy == "never")
+      quarantine->fail_at_key("'quarantine' has no meaning for a container that is never started again");
+    const std::int64_t value = quarantine->as_integer();
+    // With more crashes than restarts the container would have been given up before.
+    if (value < 1 || value > restart.max)
+      quarantine->fail(quarantine->shown() + " is out of range; allowed: 1 .. " + std::to_string(restart.max) +
+                       ", the largest number of restarts");
+    restart.quarantine = static_cast<int>(value);
+  }
   return restart;
 }
 

@@ -38,8 +38,11 @@ std::string_view to_text(RunEnd end) {
 Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(std::move(spec)) {
   spec_.domain.user_data = dds::to_user_data({spec_.name, composition_hash(spec_)});
   domain_ = std::make_unique<dds::Domain>(spec_.domain);
-  log_sinks_ =
-      std::make_unique<LogSinks>(spec_.log_to_console, spec_.run_folder, spec_.publish_log ? domain_.get() : nullptr);
+  // Several processes would write over each other's lines in one file.
+  const std::string log_file = spec_.members.size() > 1 ? "log-" + spec_.name + ".txt" : "log.txt";
+  log_sinks_ = std::make_unique<LogSinks>(spec_.log_to_console,
+                                          spec_.run_folder.empty() ? spec_.run_folder : spec_.run_folder / log_file,
+                                          spec_.publish_log ? domain_.get() : nullptr);
   status_writer_ = std::make_unique<StatusWriter>(*domain_);
   if (spec_.clock == ClockMode::lockstep) lockstep_ = std::make_unique<Lockstep>(*this, instant_, spec_.threads);
   // An endpoint's index counts those of all components before it, wherever they run.

@@ -4,6 +4,7 @@
 
 #include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
+#include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/instance.hpp"
 
 namespace kervan::runtime {
@@ -68,8 +69,10 @@ void Dispatcher::release_due(Time now) {
     std::pop_heap(wakes_.begin(), wakes_.end(), [](const Wake& a, const Wake& b) { return a.due > b.due; });
     wakes_.pop_back();
     int state = kIdle;
-    if (instance.schedule.compare_exchange_strong(state, kQueued, std::memory_order_acq_rel)) push(instance);
-    else if (state == kRunning) instance.schedule.compare_exchange_strong(state, kAgain, std::memory_order_acq_rel);
+    if (instance.schedule.compare_exchange_strong(state, kQueued, std::memory_order_acq_rel))
+      push(instance);
+    else if (state == kRunning)
+      instance.schedule.compare_exchange_strong(state, kAgain, std::memory_order_acq_rel);
   }
 }
 
@@ -118,6 +121,7 @@ void Dispatcher::run_one(ComponentInstance& instance) {
 }
 
 void Dispatcher::run() {
+  const HandlerStack handler_stack;
   const Dispatcher* outer = std::exchange(current, this);
   while (ComponentInstance* instance = next()) run_one(*instance);
   current = outer;

@@ -7,6 +7,7 @@
 
 #include "framework/component/error.hpp"
 #include "framework/runtime/container.hpp"
+#include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/dispatcher.hpp"
 #include "framework/runtime/log.hpp"
 
@@ -31,7 +32,10 @@ ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& 
   setup.name = spec.name;
   setup.parameters = &spec.parameters;
   setup.run_folder = container.spec().run_folder;
-  component_ = construct(type, setup);
+  {
+    const RunningCode code(spec.name.c_str(), "its constructor", container.now());
+    component_ = construct(type, setup);
+  }
   const ClockMode clock = container.spec().clock;
   for (OutputBase* output : component_->outputs_)
     outputs_.push_back(std::make_unique<OutputPort>(*output, binding_of(spec, output->info()), *this,
@@ -47,6 +51,8 @@ ComponentInstance::~ComponentInstance() {
   // Endpoints go first: after that no sample can arrive at a component that is being destroyed.
   inputs_.clear();
   outputs_.clear();
+  const std::string name = component_ ? component_->name_ : "";
+  const RunningCode code(name.c_str(), "its destructor", instant_.time);
   component_.reset();
 }
 
@@ -71,6 +77,7 @@ template <class Code>
 void ComponentInstance::guarded(const char* where, Instant now, Code&& code) {
   instant_ = now;
   const LogTime log_time(now.time);
+  const RunningCode running_code(component_->name_.c_str(), where, now.time);
   try {
     code();
   } catch (const std::exception& error) {

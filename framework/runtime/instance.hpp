@@ -30,6 +30,7 @@ class ComponentInstance {
 
   const std::string& name() const { return component_->name_; }
   const std::string& type() const { return type_; }
+  const Component& component() const { return *component_; }
   unsigned index() const { return index_; }
   ComponentState state() const { return component_->state_; }
   const std::string& reason() const { return component_->reason_; }

@@ -76,7 +76,7 @@ class RosoutSink final : public spdlog::sinks::base_sink<std::mutex> {
 LogTime::LogTime(Time now) : outer_(std::exchange(log_time, now)) {}
 LogTime::~LogTime() { log_time = outer_; }
 
-LogSinks::LogSinks(bool console, const std::filesystem::path& folder, dds::Domain* rosout) {
+LogSinks::LogSinks(bool console, const std::filesystem::path& file, dds::Domain* rosout) {
   if (console) {
     auto sink = std::make_shared<spdlog::sinks::stderr_color_sink_mt>();
     sink->set_level(spdlog::level::warn);
@@ -84,8 +84,8 @@ LogSinks::LogSinks(bool console, const std::filesystem::path& folder, dds::Domai
     use_pattern(*sink, std::string(isatty(STDERR_FILENO) ? "\r\033[K" : "") + "%^%l%$ [%* %n] %v");
     sinks_.push_back(std::move(sink));
   }
-  if (!folder.empty()) {
-    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>((folder / "log.txt").string());
+  if (!file.empty()) {
+    auto sink = std::make_shared<spdlog::sinks::basic_file_sink_mt>(file.string());
     use_pattern(*sink, "%* %l [%n] %v");
     sinks_.push_back(std::move(sink));
   }

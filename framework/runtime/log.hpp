@@ -36,8 +36,8 @@ class LogTime {
 
 class LogSinks {
  public:
-  /// `folder` empty: no file. `rosout` nullptr: nothing is published.
-  LogSinks(bool console, const std::filesystem::path& folder, dds::Domain* rosout);
+  /// `file` empty: none; else lines are added at its end. `rosout` nullptr: nothing is published.
+  LogSinks(bool console, const std::filesystem::path& file, dds::Domain* rosout);
   ~LogSinks();
 
   /// `level` is one of spdlog's names.

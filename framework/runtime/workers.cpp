@@ -1,5 +1,7 @@
 #include "framework/runtime/workers.hpp"
 
+#include "framework/runtime/crash_context.hpp"
+
 namespace kervan::runtime {
 
 WorkerPool::WorkerPool(unsigned threads) {
@@ -20,6 +22,7 @@ void WorkerPool::drain() {
 }
 
 void WorkerPool::serve() {
+  const HandlerStack handler_stack;
   std::unique_lock lock(mutex_);
   std::uint64_t seen = 0;
   for (;;) {

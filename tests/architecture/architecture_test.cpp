@@ -58,6 +58,8 @@ const std::vector<Arrow> arrows = {
     // The model knows manifests, not modules, and nothing that runs.
     {"deploy/composition/.*", {own_folder, "framework/component/", "framework/config/", "framework/geometry/"}},
     {"deploy/cli/.*", {"deploy/", "framework/", messages}},
+    // The supervisor writes what containers read, and reads what they write.
+    {"deploy/supervisor/.*", {own_folder, "deploy/container/", "deploy/composition/", "framework/", messages}},
     {"deploy/.*", {own_folder, "deploy/composition/", "framework/", messages}, {"deploy/cli/"}},
 
     // The generator is a back end of idlc, whose headers begin alike.
@@ -204,6 +206,8 @@ TEST(Arrows, RefuseWhatTheHouseForbids) {
   EXPECT_TRUE(refused("deploy/composition/a.cpp", "framework/runtime/container.hpp"));
   EXPECT_TRUE(refused("deploy/composition/a.cpp", "deploy/cli/verbs.hpp"));
   EXPECT_TRUE(refused("deploy/container/a.cpp", "deploy/cli/verbs.hpp"));
+  EXPECT_TRUE(refused("deploy/container/a.cpp", "deploy/supervisor/supervisor.hpp"));
+  EXPECT_TRUE(refused("deploy/supervisor/a.cpp", "deploy/cli/verbs.hpp"));
   EXPECT_TRUE(refused("tests/component/a.cpp", "components/control/potential_field_component.cpp"));
   EXPECT_TRUE(refused("elsewhere/a.cpp", "sim/world.hpp"));
   EXPECT_TRUE(fenced("framework/runtime/a.cpp", "dds/dds.h"));

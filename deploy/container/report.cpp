@@ -1,0 +1,35 @@
+#include "deploy/container/report.hpp"
+
+#include <chrono>
+
+#include "deploy/container/mission_listener.hpp"
+
+namespace kervan::container {
+
+Counters counters_of(const runtime::Container& container) {
+  Counters counters;
+  for (const auto& instance : container.instances())
+    for (const auto& input : instance->inputs()) counters.missed_deadlines += input->counters().deadline_missed;
+  return counters;
+}
+
+EndReport run_to_end(runtime::Container& container, const runtime::RunControl& control) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  const runtime::RunReport run = container.run(control);
+  EndReport report;
+  report.container = container.spec().name;
+  report.end = run.end;
+  report.reason = run.reason;
+  report.simulated_s = container.spec().clock == runtime::ClockMode::wall
+                           ? std::chrono::duration<double>(Clock::now() - start).count()
+                           : seconds(run.ended_at);
+  if (container.spec().clock == runtime::ClockMode::lockstep) report.trace_hash = container.trace_hash();
+  report.mission = mission_result(container);
+  for (const auto& instance : container.instances())
+    if (instance->state() == ComponentState::failed) report.failed.push_back({instance->name(), instance->reason()});
+  report.counters = counters_of(container);
+  return report;
+}
+
+}  // namespace kervan::container
