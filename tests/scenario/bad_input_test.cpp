@@ -105,8 +105,6 @@ const Mistake mistakes[] = {
      "31:1: duplicate key 'mission'; it was first given at line 30"},
     {"MissionBesideAComponentOfThatName", "  report: {", "  mission: {",
      "30:1: 'mission' is a component already (c.yaml:29:3); keep one of the two"},
-    {"ClockThatIsNotThere", "clock: {mode: \"${clock}\"}", "clock: {mode: sim}",
-     "9:15: this version cannot run under clock sim; write lockstep or wall"},
     {"NameOfDots", "name: one_robot", "name: ..", "4:7: name: .. is not a name for a composition; "},
     {"NameWithASlash", "name: one_robot", "name: ../x", "4:7: name: ../x is not a name for a composition; "},
     {"NameThatLooksLikeAnOption", "name: one_robot", "name: -rf", "4:7: name: -rf is not a name for a composition; "},
