@@ -107,8 +107,8 @@ ordered_json profile_json(const QosProfile& profile) {
 }
 
 QosProfile profile_of(const JsonReader& reader) {
-  reader.only_keys(
-      {"name", "reliability", "durability", "depth", "deadline_ns", "lifespan_ns", "ownership", "network", "trace"});
+  reader.only_keys({"name", "reliability", "durability", "depth", "limit", "deadline_ns", "lifespan_ns", "liveliness",
+                    "lease_ns", "ownership", "partition", "network", "trace"});
   QosProfile profile;
   profile.name = reader.at("name").text();
   profile.reliability = choice(reader.at("reliability"), {Reliability::best_effort, Reliability::reliable});
