@@ -95,12 +95,12 @@ container::EndReport host(const runtime::ContainerSpec& spec, Duration limit, co
   runtime::RunControl control;
   control.limit = limit;
   control.stop = &stop_wanted;
+  control.phase = [&](runtime::RunPhase phase) {
+    channel.send(phase == runtime::RunPhase::matched ? container::Phase::matched : container::Phase::active);
+  };
   std::optional<Time> start;
   control.progress = [&](Time now) {
-    if (!start) {
-      start = now;
-      channel.send(container::Phase::active);
-    }
+    if (!start) start = now;
     const Duration passed = spec.clock == runtime::ClockMode::wall ? now - *start : now.time_since_epoch();
     channel.send(container::Progress{seconds(passed), {}});
   };

@@ -177,13 +177,18 @@ ComponentSpec component_of(const JsonReader& reader) {
 }
 
 ordered_json domain_json(const dds::DomainConfig& domain) {
-  const auto& [id, network, interface, tag, peers, external_id] = domain;
-  return {{"id", id},   {"network", network}, {"interface", interface},
-          {"tag", tag}, {"peers", peers},     {"external_id", external_id ? ordered_json(*external_id) : nullptr}};
+  const auto& [id, network, interface, tag, peers, external_id, user_data] = domain;
+  return {{"id", id},
+          {"network", network},
+          {"interface", interface},
+          {"tag", tag},
+          {"peers", peers},
+          {"external_id", external_id ? ordered_json(*external_id) : nullptr},
+          {"user_data", user_data}};
 }
 
 dds::DomainConfig domain_of(const JsonReader& reader) {
-  reader.only_keys({"id", "network", "interface", "tag", "peers", "external_id"});
+  reader.only_keys({"id", "network", "interface", "tag", "peers", "external_id", "user_data"});
   dds::DomainConfig domain;
   domain.id = reader.at("id").integer<std::uint32_t>();
   domain.network = reader.at("network").boolean();
@@ -192,6 +197,7 @@ dds::DomainConfig domain_of(const JsonReader& reader) {
   reader.at("peers").each([&](const JsonReader& peer) { domain.peers.push_back(peer.text()); });
   if (const JsonReader external = reader.at("external_id"); !external.raw().is_null())
     domain.external_id = external.integer<std::uint32_t>();
+  domain.user_data = reader.at("user_data").text();
   return domain;
 }
 
