@@ -22,6 +22,7 @@
 #include "framework/runtime/container.hpp"
 #include "framework/test/harness.hpp"
 #include "tests/bench/reference.hpp"
+#include "tests/bench/report.hpp"
 #include "tests/bench/statistics.hpp"
 
 extern char** environ;
@@ -32,7 +33,7 @@ using namespace kervan;
 using namespace std::chrono_literals;
 using bench::median;
 using bench::now_ns;
-using bench::percentile;
+using bench::say;
 using bench_msgs::msg::Payload;
 
 /// What the hop components share with the measurement around them.
@@ -160,12 +161,11 @@ runtime::ContainerSpec chain_spec(int length, Duration period) {
   spec.domain = no_network(222);
   spec.log_to_console = spec.publish_log = false;
   for (int i = 0; i < length; ++i)
-    spec.components.push_back(
-        {.name = "relay" + std::to_string(i),
-         .type = "bench/relay",
-         .parameters = {{"first", i == 0}, {"period", seconds(period)}},
-         .ports = {{"in", "/chain" + std::to_string(i - 1 + 1000), state_profile()},
-                   {"out", "/chain" + std::to_string(i + 1000), state_profile()}}});
+    spec.components.push_back({.name = "relay" + std::to_string(i),
+                               .type = "bench/relay",
+                               .parameters = {{"first", i == 0}, {"period", seconds(period)}},
+                               .ports = {{"in", "/chain" + std::to_string(i - 1 + 1000), state_profile()},
+                                         {"out", "/chain" + std::to_string(i + 1000), state_profile()}}});
   return spec;
 }
 
@@ -308,14 +308,6 @@ std::vector<std::int64_t> hops_with_remote_reader(const char* program, std::size
 }
 
 bool failed = false;
-FILE* report = nullptr;
-
-template <class... Arguments>
-void say(const char* format, Arguments... arguments) {
-  std::printf(format, arguments...);
-  std::fflush(stdout);
-  if (report) std::fprintf(report, format, arguments...);
-}
 
 void expect_nothing_copied(const dds::DataPathStatistics& before) {
   const auto after = dds::data_path_statistics();
@@ -352,7 +344,9 @@ void bench_remote_reader(const char* program) {
       const auto hops = hops_with_remote_reader(program, bytes, bytes > 100000 ? 200 : 2000, network);
       const bool async = network == Network::async;
       say("| %zu B | %s | %.1f | %s |\n", bytes, async ? "async" : "sync", static_cast<double>(median(hops)) * 1e-3,
-          !async ? "-" : bytes == 64 ? "5" : "100");
+          !async        ? "-"
+          : bytes == 64 ? "5"
+                        : "100");
     }
   }
 }
@@ -368,7 +362,8 @@ void bench_cross_thread(int rounds) {
   }
   say("\n## One hop to another thread, 64 B at 1 kHz, p50 of %d alternating rounds\n\n", rounds);
   say("| reference | us | Kervan us | ratio | target |\n|---|---|---|---|---|\n");
-  say("| mutex and condition variable alone | %.1f | %.1f | %.2f | 1.5 |\n", median(queue), median(ours), median(ratios));
+  say("| mutex and condition variable alone | %.1f | %.1f | %.2f | 1.5 |\n", median(queue), median(ours),
+      median(ratios));
   say("| raw C, listener and condition variable | %.1f | %.1f | %.2f | - |\n", median(raw), median(ours),
       median(raw_ratios));
 }
@@ -398,21 +393,14 @@ void bench_start(const char* program, int rounds) {
   say("| resident memory, MiB | %.1f | 12 |\n", median(memory));
 }
 
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  return "unknown CPU";
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
   if (argc == 2 && std::strcmp(argv[1], "--chain-start") == 0) return chain_start(10);
   if (argc == 3 && std::strcmp(argv[1], "--remote-reader") == 0) return remote_reader(argv[2]);
   if (argc == 5 && std::strcmp(argv[1], "--hop") == 0) {  // for a profiler
-    const auto hops = kervan_hops(std::strtoul(argv[2], nullptr, 10), std::strtoul(argv[3], nullptr, 10), no_network(221),
-                                  Network::sync, std::chrono::microseconds(std::atol(argv[4])));
+    const auto hops = kervan_hops(std::strtoul(argv[2], nullptr, 10), std::strtoul(argv[3], nullptr, 10),
+                                  no_network(221), Network::sync, std::chrono::microseconds(std::atol(argv[4])));
     std::printf("%lld ns\n", static_cast<long long>(median(hops)));
     return 0;
   }
@@ -423,18 +411,11 @@ int main(int argc, char** argv) {
     std::printf("%lld ns raw C\n", static_cast<long long>(median(bench::raw_c_cross_thread_hops(3000))));
     return 0;
   }
-  const bool smoke = argc == 2 && std::strcmp(argv[1], "--smoke") == 0;
-  if (argc == 3 && std::strcmp(argv[1], "--report") == 0) report = std::fopen(argv[2], "w");
-  if (argc > 1 && !smoke && !report) {
-    std::fprintf(stderr, "usage: %s [--smoke | --report FILE | --hop BYTES COUNT PERIOD_US | --cross]\n", argv[0]);
-    return 2;
-  }
-  say("# Data path on %s, %u cores\n", cpu_name().c_str(), std::thread::hardware_concurrency());
+  const bool smoke = bench::begin(argc, argv, "Data path");
   bench_same_thread(smoke ? 1 : 7);
   bench_remote_reader("/proc/self/exe");
   bench_cross_thread(smoke ? 1 : 9);
   bench_chain(smoke ? 1 : 5, smoke ? 0.2 : 3.0);
   bench_start("/proc/self/exe", smoke ? 1 : 15);
-  if (report) std::fclose(report);
-  return failed ? 1 : 0;
+  return bench::end(failed);
 }

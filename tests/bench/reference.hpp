@@ -7,8 +7,8 @@
 
 namespace kervan::bench {
 
-/// One hop in the writer's thread: dds_write, and a listener that takes into its own sample. Nanoseconds each, from before
-/// the write to the first line after the take.
+/// One hop in the writer's thread: dds_write, and a listener that takes into its own sample. Nanoseconds each, from
+/// before the write to the first line after the take.
 std::vector<std::int64_t> raw_c_hops(std::size_t bytes, std::size_t count);
 
 /// One hop to a thread that sleeps on a condition variable, one message per millisecond. Nanoseconds each.

@@ -1,7 +1,6 @@
-#include <sys/resource.h>
-
 #include "bench_msgs/msg/Payload.hpp"
 #include "framework/kervan.hpp"
+#include "tests/bench/statistics.hpp"
 
 namespace kervan::bench {
 namespace {
@@ -24,7 +23,8 @@ class Relay final : public Component {
   RelayParams params_ = parameters<RelayParams>();
   Input<Payload> in_{this, "in", qos::state.optional(), &Relay::on_message, "From the link before."};
   Output<Payload> out_{this, "out", qos::state, "To the link after."};
-  std::unique_ptr<Timer> tick_ = params_.first ? std::make_unique<Timer>(this, params_.period, &Relay::on_tick) : nullptr;
+  std::unique_ptr<Timer> tick_ =
+      params_.first ? std::make_unique<Timer>(this, params_.period, &Relay::on_tick) : nullptr;
 
   void on_message(const Payload& message, Time) {
     auto next = out_.loan_uncleared();
@@ -38,6 +38,7 @@ class Relay final : public Component {
     auto message = out_.loan_uncleared();
     message->data.resize(64);
     ++message->number;
+    message->stamp = now_ns();
     out_.publish(std::move(message));
   }
 };
