@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "deploy/composition/clock_rules.hpp"
 #include "deploy/composition/load.hpp"
 #include "deploy/composition/topics.hpp"
 #include "framework/config/values.hpp"
@@ -97,6 +98,7 @@ ResolvedComposition resolve(Composition composition, ComponentCatalogue& catalog
         component.container = container.name;
   resolved.source = std::move(composition);
   name_topics(resolved);
+  judge_clock(resolved);
   connect(resolved, options);
   return resolved;
 }

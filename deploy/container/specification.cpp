@@ -3,13 +3,12 @@
 #include <algorithm>
 
 #include "deploy/container/mission_listener.hpp"
+#include "framework/runtime/clock_reader.hpp"
 
 namespace kervan::container {
 namespace {
 
 constexpr const char* kMissionResultType = "kervan_msgs::msg::MissionResult";
-constexpr const char* kClockTopic = "/clock";
-constexpr const char* kClockType = "rosgraph_msgs::msg::Clock";
 
 runtime::ClockMode clock_of(const composition::Clock& clock) {
   switch (clock.mode) {
@@ -93,11 +92,8 @@ std::vector<runtime::ContainerSpec> specifications(const composition::ResolvedCo
 }
 
 std::string time_keeper(const runtime::ContainerSpec& spec) {
-  for (const runtime::ComponentSpec& component : spec.components)
-    for (const runtime::PortBinding& port : component.ports)
-      if (port.direction == PortDirection::output && port.topic == kClockTopic && port.type == kClockType)
-        return component.container;
-  return {};
+  const auto writer = runtime::clock_writer(spec);
+  return writer ? writer->container : std::string();
 }
 
 }  // namespace kervan::container

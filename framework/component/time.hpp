@@ -17,8 +17,8 @@ struct CompositionClock {
   static constexpr bool is_steady = true;
 };
 
-/// Under `lockstep` the epoch is the start of the run; under `wall` it is the Unix epoch at the start of the container,
-/// carried on by the steady clock, so that a set wall clock never moves it.
+/// Under `lockstep` and `sim` the epoch is the start of the run; under `wall` it is the Unix epoch at the start of the
+/// container, carried on by the steady clock, so that a set wall clock never moves it.
 using Time = CompositionClock::time_point;
 
 inline constexpr Duration forever = Duration::max();

@@ -76,7 +76,7 @@ std::string cyclone_configuration(const DomainConfig& config) {
   return xml + "</Discovery>";
 }
 
-Domain::Domain(const DomainConfig& config) {
+Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time) : time_(time) {
   LogCapture log;
   const auto fail = [&](const char* what, int code) {
     if (domain_ > 0) dds_delete(domain_);
@@ -108,6 +108,7 @@ Domain::Topic Domain::topic(const std::string& name, const TypeSupport& type) {
   }
 
   SampleType* sample_type = make_sample_type(*known);
+  sample_type->time = time_;
   ddsi_sertype* registered = sample_type;
   const std::string wire_name = "rt" + name;
   const dds_entity_t entity =

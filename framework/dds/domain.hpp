@@ -1,6 +1,7 @@
 /// A DDS domain of this process, with one participant and a configuration made here.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -9,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/component/time.hpp"
 #include "framework/dds/type_support.hpp"
 
 namespace kervan::dds {
@@ -38,8 +40,9 @@ struct SampleType;
 /// The first failure is fatal: after a failed domain a participant might come up on another interface, unasked.
 class Domain {
  public:
-  /// Throws DdsError if the domain or its participant cannot be made.
-  explicit Domain(const DomainConfig& config);
+  /// `time` stamps what arrives from other processes, in nanoseconds on the composition's clock; nullptr: the wall clock
+  /// does. It must outlive the domain. Throws DdsError if the domain or its participant cannot be made.
+  explicit Domain(const DomainConfig& config, const std::atomic<Time::rep>* time = nullptr);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
   ~Domain();
@@ -61,6 +64,7 @@ class Domain {
     const TypeSupport* type;
   };
 
+  const std::atomic<Time::rep>* time_;
   std::int32_t domain_ = 0;
   std::int32_t participant_ = 0;
   std::mutex mutex_;

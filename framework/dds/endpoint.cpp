@@ -84,8 +84,8 @@ dds_duration_t to_dds(Duration duration) { return duration == forever ? DDS_INFI
 /// Cyclone's form of what an endpoint offers or requests; `qos` is that of the whole profile.
 QosHandle cyclone_qos(const QosProfile& profile, EndpointQos qos, CyclonePart part) {
   const bool carrier = part == CyclonePart::carrier;
-  if (carrier) {
-    qos.reliability = Reliability::reliable;
+  if (carrier) qos.reliability = Reliability::reliable;
+  if (part != CyclonePart::whole_profile) {
     qos.deadline = qos.lease = forever;
     qos.liveliness = LivelinessKind::automatic;
     qos.ownership = Ownership::shared;

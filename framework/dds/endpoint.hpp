@@ -19,9 +19,12 @@ struct SampleBlock;
 /// Whether it repeats its writer's last sample only to say that the writer is alive.
 bool is_assertion(const SampleBlock* block) noexcept;
 
-/// Whether Cyclone is asked for the whole profile or only carries samples. Under a logical clock it must only carry:
-/// reliable, everything kept, no time-based policies; history and times are then the sample cache's alone.
-enum class CyclonePart { whole_profile, carrier };
+/// How much of a profile Cyclone is asked for; the port's sample cache applies the rest on the composition's clock.
+enum class CyclonePart {
+  whole_profile,  ///< clock wall: Cyclone's own time is the composition's
+  untimed,        ///< clock sim: reliability, history and durability; nothing that has to do with time, no ownership
+  carrier,        ///< clock lockstep: reliable, everything kept, and durability
+};
 
 /// One event of an endpoint, as a value.
 struct EndpointStatus {

@@ -79,12 +79,17 @@ bool eqkey(const ddsi_serdata* a, const ddsi_serdata* b) noexcept {
 
 std::uint32_t get_size(const ddsi_serdata* serdata) noexcept { return cdr_size(as_block(serdata)); }
 
+/// When a sample that is just being received counts as received.
+Time arrival_time(const SampleType& type) noexcept {
+  return type.time ? Time(Duration(type.time->load(std::memory_order_relaxed))) : wall_now();
+}
+
 /// Decodes received bytes, the encapsulation header included, into a fresh block; nullptr if they are not a message.
 ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span<const std::byte> payload) noexcept {
   const auto* sample_type = static_cast<const SampleType*>(type);
   const TypeSupport& support = *sample_type->support;
   SampleBlock* block = sample_type->pool->get(type, kind);
-  block->received = wall_now();
+  block->received = arrival_time(*sample_type);
   cdr::Reader reader = cdr::open(payload.data(), payload.size());
   const bool good = kind == SDK_KEY ? support.read_key(block->value, reader) : support.read_cdr(block->value, reader);
   if (!good) {
@@ -129,8 +134,9 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind, dds
 ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) noexcept {
   // A key hash may be an MD5 sum, from which no key can be recovered; for keyless types there is nothing to recover.
   if (!type->typekind_no_key) return nullptr;
-  SampleBlock* block = static_cast<const SampleType*>(type)->pool->get(type, SDK_KEY);
-  block->received = wall_now();
+  const auto* sample_type = static_cast<const SampleType*>(type);
+  SampleBlock* block = sample_type->pool->get(type, SDK_KEY);
+  block->received = arrival_time(*sample_type);
   seal(block);
   return block;
 }

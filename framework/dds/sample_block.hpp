@@ -42,7 +42,7 @@ struct SampleBlock : KeyedBlock {
   std::atomic<CdrBytes*> spare{nullptr};  ///< memory for it, kept from an earlier use of the block
   SampleBlock* next_free = nullptr;
   std::size_t pooled_bytes = 0;  ///< what the block accounts for while it lies in the pool
-  Time received{};               ///< on this process' clock; the publishing time for a local sample
+  Time received{};               ///< on the composition's clock; the publishing time for a local sample
   void* value = nullptr;         ///< behind this struct, suitably aligned
 };
 
@@ -92,6 +92,7 @@ class BlockPool {
 struct SampleType : ddsi_sertype {
   const TypeSupport* support = nullptr;
   BlockPool* pool = nullptr;
+  const std::atomic<Time::rep>* time = nullptr;  ///< stamps what is received; nullptr: the wall clock does
   ddsi_sertype_default description{};  ///< idlc's descriptor, the source of XTypes information
 };
 

@@ -25,6 +25,10 @@ inline builtin_interfaces::msg::Time to_message(Time time) {
   return message;
 }
 
+inline Time time_of(const builtin_interfaces::msg::Time& message) {
+  return Time(std::chrono::seconds(message.sec) + Duration(message.nanosec));
+}
+
 inline void set_header(std_msgs::msg::Header& header, Time stamp, const std::string& frame) {
   header.stamp = to_message(stamp);
   header.frame_id = frame;

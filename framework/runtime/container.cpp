@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
-#include <thread>
 
 #include "framework/component/error.hpp"
 #include "framework/dds/discovery.hpp"
 #include "framework/dds/hash.hpp"
-#include "framework/dds/wall_clock.hpp"
+#include "framework/runtime/clock_reader.hpp"
 #include "framework/runtime/dispatcher.hpp"
 #include "framework/runtime/lockstep.hpp"
 #include "framework/runtime/log.hpp"
@@ -19,7 +18,13 @@ namespace kervan::runtime {
 
 namespace {
 
-constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);
+/// Whether simulated time is run here.
+bool writes_clock(const std::vector<std::unique_ptr<ComponentInstance>>& instances) {
+  for (const auto& instance : instances)
+    for (const auto& output : instance->outputs())
+      if (output->binding().topic == kClockTopic) return true;
+  return false;
+}
 
 }  // namespace
 
@@ -31,13 +36,15 @@ std::string_view to_text(RunEnd end) {
     case RunEnd::idle: return "idle";
     case RunEnd::livelock: return "livelock";
     case RunEnd::peer_lost: return "peer lost";
+    case RunEnd::clock_lost: return "clock lost";
   }
   return "unknown";
 }
 
-Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(std::move(spec)) {
+Container::Container(ContainerSpec spec, ComponentRegistry& registry)
+    : spec_(std::move(spec)), clock_(spec_.clock == ClockMode::sim) {
   spec_.domain.user_data = dds::to_user_data({spec_.name, composition_hash(spec_)});
-  domain_ = std::make_unique<dds::Domain>(spec_.domain);
+  domain_ = std::make_unique<dds::Domain>(spec_.domain, clock_.stamp());
   // Several processes would write over each other's lines in one file.
   const std::string log_file = spec_.members.size() > 1 ? "log-" + spec_.name + ".txt" : "log.txt";
   log_sinks_ = std::make_unique<LogSinks>(spec_.log_to_console,
@@ -70,6 +77,11 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(st
     lockstep_->connect();
     return;
   }
+  if (spec_.clock == ClockMode::sim && !writes_clock(instances_)) {
+    const auto writer = clock_writer(spec_);
+    clock_reader_ =
+        std::make_unique<ClockReader>(*domain_, clock_, writer ? writer->reliability : Reliability::reliable);
+  }
   if (spec_.members.size() > 1) members_ = std::make_unique<Members>(*domain_, spec_, [this] { bell_.ring(); });
   watch_ = std::make_unique<Watch>(*this, bell_, [this] { hear_members(); });
 }
@@ -77,6 +89,7 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry) : spec_(st
 Container::~Container() {
   watch_.reset();
   members_.reset();
+  clock_reader_.reset();
   instances_.clear();
   status_writer_.reset();
   log_sinks_.reset();
@@ -104,7 +117,7 @@ std::uint64_t Container::trace_hash() const {
 
 void Container::input_ready(InputPort& port) noexcept {
   ComponentInstance& instance = port.owner();
-  if (spec_.clock == ClockMode::wall) {
+  if (spec_.clock != ClockMode::lockstep) {
     instance.notify();
     return;
   }
@@ -150,56 +163,13 @@ std::shared_ptr<spdlog::logger> Container::make_logger(const ComponentSpec& spec
 }
 
 void Container::activate() {
-  instant_ = {spec_.clock == ClockMode::wall ? dds::wall_now() : Time{}, 0};
+  instant_ = {spec_.clock == ClockMode::lockstep ? Time{} : clock_.now(), 0};
   started_ = instant_.time;
   for (const auto& instance : instances_) instance->activate(instant_);
   publish_changed_statuses();
 }
 
 void Container::advance(Time until) { lockstep_->advance(until); }
-
-RunReport Container::run_wall(const RunControl& control) {
-  RunReport report;
-  dispatchers_.clear();
-  dispatchers_.push_back(std::make_unique<Dispatcher>());
-  for (const auto& instance : instances_) {
-    Dispatcher* dispatcher = dispatchers_.front().get();
-    if (instance->wants_own_thread()) dispatcher = dispatchers_.emplace_back(std::make_unique<Dispatcher>()).get();
-    instance->dispatcher = dispatcher;
-    dispatcher->enqueue(*instance);  // whatever came during activation
-  }
-  std::vector<std::thread> threads;
-  for (unsigned i = 0; i < spec_.threads; ++i) threads.emplace_back(&Dispatcher::run, dispatchers_.front().get());
-  for (std::size_t i = 1; i < dispatchers_.size(); ++i) threads.emplace_back(&Dispatcher::run, dispatchers_[i].get());
-
-  report = supervise(control);
-  for (const auto& dispatcher : dispatchers_) dispatcher->stop();
-  for (std::thread& thread : threads) thread.join();
-  for (const auto& instance : instances_) instance->dispatcher = nullptr;
-  instant_ = {dds::wall_now(), 0};
-  return report;
-}
-
-/// Waits for the end of a run under the wall clock, in the thread that called run(), and shows its progress.
-RunReport Container::supervise(const RunControl& control) {
-  const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
-  std::unique_lock lock(finish_mutex_);
-  for (;;) {
-    if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
-    // A signal handler sets the flag and can do no more, so it has to be looked at now and then.
-    if (control.stop && control.stop->load(std::memory_order_relaxed))
-      return {.end = RunEnd::interrupted, .reason = "interrupted"};
-    const Time now = dds::wall_now();
-    if (now >= end) return {.end = RunEnd::time_limit, .reason = "the time asked for has passed"};
-    if (control.progress) {
-      lock.unlock();
-      control.progress(now);
-      lock.lock();
-      if (finish_) continue;
-    }
-    finish_wanted_.wait_for(lock, std::min<Duration>(kProgressPeriod, end - now));
-  }
-}
 
 void Container::end() {
   if (lockstep_) return lockstep_->end();
@@ -220,11 +190,13 @@ RunReport Container::run(const RunControl& control) {
   RunReport report;
   if (const std::optional<RunReport> ended = wait_for_peers(control)) {
     report = *ended;
+  } else if (const std::optional<RunReport> no_time = wait_for_clock(control)) {
+    report = *no_time;
   } else {
     activate();
     if (members_) members_->publish(kervan_msgs::msg::ContainerPhase::CONTAINER_ACTIVE, {}, instant_.time);
     if (control.phase) control.phase(RunPhase::active);
-    report = lockstep_ ? lockstep_->run(control) : run_wall(control);
+    report = lockstep_ ? lockstep_->run(control) : run_dispatchers(control);
     end();
   }
   // Neither a limit of time nor an interruption of this container ends the others' runs.

@@ -1,4 +1,4 @@
-/// Runs the components of one process. The clock decides who drives it: the wall clock's dispatcher or lockstep.
+/// Runs the components of one process. The clock decides who drives it: dispatchers (wall, sim) or lockstep.
 #pragma once
 
 #include <atomic>
@@ -15,11 +15,14 @@
 #include "framework/component/registry.hpp"
 #include "framework/dds/endpoint.hpp"
 #include "framework/runtime/bell.hpp"
+#include "framework/runtime/clock.hpp"
 #include "framework/runtime/instance.hpp"
 #include "framework/runtime/spec.hpp"
 
 namespace kervan::runtime {
 
+class Activity;
+class ClockReader;
 class Dispatcher;
 class Lockstep;
 class LogSinks;
@@ -33,9 +36,10 @@ enum class RunEnd {
   finished,     ///< a component called finish()
   time_limit,   ///< the time asked for has passed
   interrupted,  ///< the stop flag was set
-  idle,         ///< lockstep only: no timer is left and no sample, so nothing would ever happen again
+  idle,         ///< lockstep and sim: no timer is left and no sample, so nothing would ever happen again
   livelock,     ///< lockstep only: a loop of ports publishes for ever at one time
   peer_lost,    ///< lockstep only: another container died, stopped, or never came
+  clock_lost,   ///< sim only: the container that runs the simulated time is gone, or its time stands still
 };
 std::string_view to_text(RunEnd end);
 
@@ -52,11 +56,13 @@ enum class RunPhase {
   active,   ///< so are all others', and every component is active
 };
 
+inline constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);  ///< of wall time
+
 struct RunControl {
   Duration limit = forever;                            ///< on the composition's clock, from the start of the run
   const std::atomic<bool>* stop = nullptr;             ///< ends the run in good order when set
   Duration members_within = std::chrono::seconds(30);  ///< lockstep: wall time in which the other containers must come
-  std::function<void(Time)> progress = {};             ///< called about ten times a second of wall time
+  std::function<void(Time)> progress = {};             ///< called about every kProgressPeriod
   std::function<void(RunPhase)> phase = {};            ///< called when the run reaches it
 };
 
@@ -82,6 +88,7 @@ class Container {
   Time now() const { return instant_.time; }
   bool finish_requested() const { return finish_requested_.load(); }
   const ContainerSpec& spec() const { return spec_; }
+  const ContainerClock& clock() const { return clock_; }  ///< of wall and sim
   dds::Domain& domain() { return *domain_; }
   const std::vector<std::unique_ptr<ComponentInstance>>& instances() const { return instances_; }
   ComponentInstance* find(const std::string& name);
@@ -108,10 +115,15 @@ class Container {
   /// theirs. A report, if the run ended before that.
   std::optional<RunReport> wait_for_peers(const RunControl& control);
   void hear_members();
-  RunReport run_wall(const RunControl& control);
+  RunReport run_dispatchers(const RunControl& control);
+  void start_dispatchers(Activity* activity);
   RunReport supervise(const RunControl& control);
+  RunReport run_simulated_time(const RunControl& control, const Activity& activity);
+  std::optional<RunReport> wait_for_clock(const RunControl& control);
+  std::optional<RunReport> lost_clock() const;
 
   ContainerSpec spec_;
+  ContainerClock clock_;
   Instant instant_;
   Time started_{};
   std::unique_ptr<dds::Domain> domain_;
@@ -125,6 +137,7 @@ class Container {
   std::unique_ptr<Watch> watch_;  ///< not under lockstep
   std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
   std::unique_ptr<Lockstep> lockstep_;
+  std::unique_ptr<ClockReader> clock_reader_;  ///< clock sim, when another container runs the time
   std::atomic<bool> finish_requested_{false};
   std::mutex finish_mutex_;
   std::condition_variable finish_wanted_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/instance.hpp"
@@ -39,6 +38,7 @@ void Dispatcher::enqueue(ComponentInstance& instance) noexcept {
     if (instance.schedule.compare_exchange_weak(state, wanted, std::memory_order_acq_rel)) break;
   }
   if (state == kRunning) return;  // whoever runs it will queue it again
+  if (activity_) activity_->begin();
   bool wake;
   {
     const std::lock_guard lock(mutex_);
@@ -63,16 +63,33 @@ void Dispatcher::schedule(ComponentInstance& instance) {
   if (earliest && current != this) work_.notify_one();
 }
 
-void Dispatcher::release_due(Time now) {
+void Dispatcher::time_moved() noexcept {
+  bool wake;
+  {
+    const std::lock_guard lock(mutex_);
+    release_due(clock_.now());
+    wake = first_ != nullptr && waiting_ > 0;
+  }
+  if (wake) work_.notify_one();
+}
+
+Time Dispatcher::next_wake() {
+  const std::lock_guard lock(mutex_);
+  return wakes_.empty() ? Time::max() : wakes_.front().due;
+}
+
+void Dispatcher::release_due(Time now) noexcept {
   while (!wakes_.empty() && wakes_.front().due <= now) {
     ComponentInstance& instance = *wakes_.front().instance;
     std::pop_heap(wakes_.begin(), wakes_.end(), [](const Wake& a, const Wake& b) { return a.due > b.due; });
     wakes_.pop_back();
     int state = kIdle;
-    if (instance.schedule.compare_exchange_strong(state, kQueued, std::memory_order_acq_rel))
+    if (instance.schedule.compare_exchange_strong(state, kQueued, std::memory_order_acq_rel)) {
+      if (activity_) activity_->begin();
       push(instance);
-    else if (state == kRunning)
+    } else if (state == kRunning) {
       instance.schedule.compare_exchange_strong(state, kAgain, std::memory_order_acq_rel);
+    }
   }
 }
 
@@ -83,9 +100,10 @@ ComponentInstance* Dispatcher::next() {
     if (stopped_) return nullptr;
     Duration sleep = forever;
     if (!wakes_.empty()) {
-      const Time now = dds::wall_now();
+      const Time now = clock_.now();
       release_due(now);
-      if (!wakes_.empty()) sleep = wakes_.front().due - now;
+      // Simulated time says by itself when it has moved.
+      if (!wakes_.empty() && !clock_.stepped()) sleep = wakes_.front().due - now;
     }
     if (first_) {
       ComponentInstance* instance = first_;
@@ -107,14 +125,17 @@ ComponentInstance* Dispatcher::next() {
 
 void Dispatcher::run_one(ComponentInstance& instance) {
   instance.schedule.store(kRunning, std::memory_order_release);
-  const Time now = dds::wall_now();
+  const Time now = clock_.now();
   instance.stage(now);  // first: what has arrived in time has not missed its deadline
   instance.run_due({now, 0});
   instance.run_inputs({now, 0});
   if (instance.take_status_changed()) instance.container().publish_status(instance);
   schedule(instance);
   int state = kRunning;
-  if (instance.schedule.compare_exchange_strong(state, kIdle, std::memory_order_acq_rel)) return;
+  if (instance.schedule.compare_exchange_strong(state, kIdle, std::memory_order_acq_rel)) {
+    if (activity_) activity_->end();
+    return;
+  }
   instance.schedule.store(kQueued, std::memory_order_release);
   const std::lock_guard lock(mutex_);
   push(instance);

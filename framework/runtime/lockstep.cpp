@@ -15,8 +15,6 @@ constexpr unsigned kMaxCycles = 1000;
 /// Whoever runs within so many cycles of the limit belongs to the loop.
 constexpr unsigned kLongestLoop = 100;
 
-constexpr Duration kProgressPeriod = std::chrono::milliseconds(100);
-
 }  // namespace
 
 Lockstep::Lockstep(Container& container, Instant& instant, unsigned threads)

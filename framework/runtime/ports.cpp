@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "framework/dds/hash.hpp"
-#include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/countdown.hpp"
 #include "framework/runtime/instance.hpp"
@@ -23,7 +22,12 @@ std::size_t inbox_limit(ClockMode clock, const QosProfile& profile, bool keyed) 
 }
 
 dds::CyclonePart part_of(ClockMode clock) {
-  return clock == ClockMode::wall ? dds::CyclonePart::whole_profile : dds::CyclonePart::carrier;
+  switch (clock) {
+    case ClockMode::wall: return dds::CyclonePart::whole_profile;
+    case ClockMode::sim: return dds::CyclonePart::untimed;
+    case ClockMode::lockstep: return dds::CyclonePart::carrier;
+  }
+  return dds::CyclonePart::carrier;
 }
 
 }  // namespace
@@ -247,7 +251,8 @@ void OutputPort::on_status() noexcept {
 void OutputPort::publish(dds::SampleBlock* block, Operation operation) {
   const Instant& at = owner_.instant();
   // A handler may have run for long when it publishes, and age counts from here.
-  const Time stamp = owner_.container().spec().clock == ClockMode::wall ? dds::wall_now() : at.time;
+  const Container& container = owner_.container();
+  const Time stamp = container.spec().clock == ClockMode::lockstep ? at.time : container.clock().now();
   ++sequence_;
   if (traced_) {
     Hash64 hash(trace_);
