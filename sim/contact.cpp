@@ -12,8 +12,8 @@ constexpr double released = 1e-3;      // m; a touch has ended when everything i
 constexpr double longest_move = 0.01;  // m; far less than any body is wide, so no obstacle is jumped over
 }  // namespace
 
-Body::Body(const Outline& outline, const Pose2& start, const World& world) : outline_(outline), pose_(start) {
-  if (!try_pose(start, world)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
+Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around) : outline_(outline), pose_(start) {
+  if (!try_pose(start, around)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
 }
 
 /// No point of the body moves farther than this.
@@ -21,31 +21,33 @@ double Body::length(const Motion& motion) const {
   return std::abs(motion.distance) + outline_.circumradius() * std::abs(motion.turn);
 }
 
-bool Body::try_pose(const Pose2& pose, const World& world) {
-  const double clearance = world.clearance(outline_, pose).distance;
-  if (!(clearance > skin)) return false;
+bool Body::try_pose(const Pose2& pose, const Surroundings& around) {
+  const Room room = around.room(outline_, pose);
+  if (!(room.all.distance > skin)) return false;
   pose_ = pose;
-  room_ = clearance;
-  min_clearance_ = std::min(min_clearance_, clearance);
+  room_ = room.world;
+  clear_ = room.all.distance;
+  min_clearance_ = std::min(min_clearance_, clear_);
   return true;
 }
 
-Moved Body::move(const Motion& wanted, const World& world) {
+Moved Body::move(const Motion& wanted, const Surroundings& around) {
   const double total = length(wanted);
   if (total == 0.0) return {};
 
   // Far from everything nothing needs to be looked at: neither can the body touch, nor come nearer than it ever was.
-  if (!touching_ && room_ - total > min_clearance_) {
+  const double room = std::min(room_, around.room_among_robots(outline_, pose_));
+  if (!touching_ && room - total > min_clearance_) {
     pose_ = advance(pose_, wanted);
     room_ -= total;
     return {wanted};
   }
 
-  const int moves = room_ - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
+  const int moves = room - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
   Motion part{wanted.distance / moves, wanted.turn / moves};
   Moved all;
   for (int i = 0; i < moves; ++i) {
-    const Moved now = move_shortly(part, world);
+    const Moved now = move_shortly(part, around);
     all.motion.distance += now.motion.distance;
     all.motion.turn += now.motion.turn;
     all.stopped_driving |= now.stopped_driving;
@@ -53,39 +55,57 @@ Moved Body::move(const Motion& wanted, const World& world) {
     if (all.stopped_driving) part.distance = 0.0;
     if (all.stopped_turning) part.turn = 0.0;
   }
-  if (room_ > released) touching_ = false;
+  if (clear_ > released) touching_ = false;
   return all;
 }
 
-Moved Body::move_shortly(const Motion& wanted, const World& world) {
-  if (try_pose(advance(pose_, wanted), world)) return {wanted};
+Moved Body::move_shortly(const Motion& wanted, const Surroundings& around) {
+  if (try_pose(advance(pose_, wanted), around)) return {wanted};
 
-  const double free = drive_up_to_obstacle(wanted, world);
-  if (!touching_) begin_contact(world);
+  const double free = drive_up_to_obstacle(wanted, around);
+  if (!touching_) begin_contact(around);
   const Motion driven{free * wanted.distance, free * wanted.turn};
   const Motion rest{wanted.distance - driven.distance, wanted.turn - driven.turn};
   if (wanted.distance != 0.0 && wanted.turn != 0.0) {
-    if (try_pose(advance(pose_, {0.0, rest.turn}), world)) return {{driven.distance, wanted.turn}, true, false};
-    if (try_pose(advance(pose_, {rest.distance, 0.0}), world)) return {{wanted.distance, driven.turn}, false, true};
+    if (try_pose(advance(pose_, {0.0, rest.turn}), around)) return {{driven.distance, wanted.turn}, true, false};
+    if (try_pose(advance(pose_, {rest.distance, 0.0}), around)) return {{wanted.distance, driven.turn}, false, true};
   }
   return {driven, wanted.distance != 0.0, wanted.turn != 0.0};
 }
 
-double Body::drive_up_to_obstacle(const Motion& motion, const World& world) {
+double Body::drive_up_to_obstacle(const Motion& motion, const Surroundings& around) {
   const Pose2 start = pose_;
   const double total = length(motion);
   double free = 0.0, blocked = 1.0;
   while ((blocked - free) * total > skin) {
     const double middle = 0.5 * (free + blocked);
-    (try_pose(advance(start, {middle * motion.distance, middle * motion.turn}), world) ? free : blocked) = middle;
+    (try_pose(advance(start, {middle * motion.distance, middle * motion.turn}), around) ? free : blocked) = middle;
   }
   return free;
 }
 
-void Body::begin_contact(const World& world) {
+void Body::begin_contact(const Surroundings& around) {
+  const Room room = around.room(outline_, pose_);
   touching_ = true;
   ++contacts_;
-  last_ = {world.clearance(outline_, pose_).on_obstacle, pose_};
+  last_ = {room.all.on_obstacle, pose_, room.other ? room.other->name() : std::string()};
+}
+
+void Body::look(const Surroundings& around) {
+  const double among_robots = around.room_among_robots(outline_, pose_);
+  if (among_robots == infinity || (!touching_ && among_robots >= min_clearance_)) return;
+  const Room room = around.room(outline_, pose_);
+  room_ = room.world;
+  clear_ = room.all.distance;
+  min_clearance_ = std::min(min_clearance_, clear_);
+  if (clear_ > released) touching_ = false;
+}
+
+void Body::touched_by(const std::string& other, const Vector2& point) {
+  if (touching_) return;
+  touching_ = true;
+  ++contacts_;
+  last_ = {point, pose_, other};
 }
 
 }  // namespace kervan::sim

@@ -1,10 +1,11 @@
-/// A solid body among solid obstacles.
+/// A solid body among solid obstacles and other bodies.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "sim/drive.hpp"
-#include "sim/world.hpp"
+#include "sim/surroundings.hpp"
 
 namespace kervan::sim {
 
@@ -12,6 +13,7 @@ namespace kervan::sim {
 struct Contact {
   Vector2 point = Vector2::Zero();  ///< in map, on the obstacle
   Pose2 pose;                       ///< of the body in map when the touch began
+  std::string other;                ///< the robot that is touched; empty: the world
 };
 
 /// What became of a movement.
@@ -21,42 +23,51 @@ struct Moved {
   bool stopped_turning = false;  ///< an obstacle cut the turn short
 };
 
-/// Moves a body so that it never enters an obstacle. It is always more than a micrometre from all of them, so it can
-/// neither stick to a wall nor be pushed through one, however thin the wall and however long the step.
+/// Moves a body so that it never enters an obstacle or another body. It is always more than a micrometre from all of
+/// them, so it can neither stick to a wall nor be pushed through one, however thin the wall and however long the step.
+/// Bodies do not push each other: one that drives into another is stopped as by a wall.
 class Body {
  public:
   /// Throws std::invalid_argument if there is no room for the body at `start`.
-  Body(const Outline& outline, const Pose2& start, const World& world);
+  Body(const Outline& outline, const Pose2& start, const Surroundings& around);
 
   /// Moves along the arc as far as the obstacles allow. On contact the translation stops and the body only turns on; if
   /// an obstacle stops the turning but not the translation, as it does when the tail touches a wall, it drives straight
   /// on.
-  Moved move(const Motion& wanted, const World& world);
+  Moved move(const Motion& wanted, const Surroundings& around);
+
+  /// Others may have come nearer or gone away since the last movement.
+  void look(const Surroundings& around);
+
+  /// Another body has driven into this one, at `point`.
+  void touched_by(const std::string& other, const Vector2& point);
 
   const Pose2& pose() const { return pose_; }
   const Outline& outline() const { return outline_; }
 
-  /// True from the moment an obstacle stops a movement until the body is a millimetre away from all of them.
+  /// True from the moment an obstacle stops a movement, or another body is stopped by this one, until the body is a
+  /// millimetre away from all of them.
   bool touching() const { return touching_; }
   std::uint64_t contacts() const { return contacts_; }   ///< touches begun so far
   const Contact& last_contact() const { return last_; }  ///< meaningful once contacts() > 0
 
-  /// The smallest clearance after any movement so far, m.
+  /// The smallest clearance to the world and to other bodies so far, m.
   double min_clearance() const { return min_clearance_; }
 
  private:
   /// Takes the pose if it is free.
-  bool try_pose(const Pose2& pose, const World& world);
+  bool try_pose(const Pose2& pose, const Surroundings& around);
   /// The part of a blocked arc, in [0, 1), that is free; takes the pose there.
-  double drive_up_to_obstacle(const Motion& motion, const World& world);
+  double drive_up_to_obstacle(const Motion& motion, const Surroundings& around);
   /// One movement that is short enough not to jump over anything.
-  Moved move_shortly(const Motion& wanted, const World& world);
-  void begin_contact(const World& world);
+  Moved move_shortly(const Motion& wanted, const Surroundings& around);
+  void begin_contact(const Surroundings& around);
   double length(const Motion& motion) const;
 
   Outline outline_;
   Pose2 pose_;
-  double room_ = 0.0;  // no more than the clearance is now; exact after a look at the world
+  double room_ = 0.0;   // no more than the clearance to the world is now; exact after a look at it
+  double clear_ = 0.0;  // to everything, when it was last looked at
   double min_clearance_ = infinity;
   bool touching_ = false;
   std::uint64_t contacts_ = 0;

@@ -42,7 +42,7 @@ void DifferentialDrive::command(const Twist2& wanted, Duration now) {
   }
   wanted_.linear = std::clamp(wanted.linear, -limits_.speed, limits_.speed);
   wanted_.angular = std::clamp(wanted.angular, -limits_.turn_rate, limits_.turn_rate);
-  fresh_until_ = now + command_timeout;
+  fresh_until_ = now + command_timeout_;
 }
 
 Motion DifferentialDrive::step(Duration now, Duration dt) {

@@ -37,10 +37,10 @@ Ramp ramp(double speed, double target, double acceleration, double deceleration,
 
 class DifferentialDrive {
  public:
-  /// Braking begins this long after the last fresh command, whatever happened to whoever sent it.
-  static constexpr Duration command_timeout = std::chrono::milliseconds(250);
-
-  explicit DifferentialDrive(const DriveLimits& limits) : limits_(limits) {}
+  /// Full braking begins no later than `command_timeout` after the last fresh command, whatever happened to whoever
+  /// sent it.
+  explicit DifferentialDrive(const DriveLimits& limits, Duration command_timeout = std::chrono::milliseconds(250))
+      : limits_(limits), command_timeout_(command_timeout) {}
 
   /// Takes a new speed at time `now`, clamped to the limits. A speed that is not finite is refused and counted; it does
   /// not keep the drive going.
@@ -58,6 +58,7 @@ class DifferentialDrive {
 
  private:
   DriveLimits limits_;
+  Duration command_timeout_;
   Twist2 speed_;
   Twist2 wanted_;
   Duration fresh_until_{0};

@@ -11,16 +11,20 @@ RobotSetup valid(RobotSetup setup) {
   require_valid(setup.model);
   if (setup.sonar_period <= Duration::zero() || setup.odometry_period <= Duration::zero())
     throw std::invalid_argument("robot " + setup.name + ": the periods of its sensors must be positive");
+  if (setup.command_timeout <= Duration::zero())
+    throw std::invalid_argument("robot " + setup.name + ": the time-out of its drive must be positive");
   if (!(setup.odometry_error >= 0.0 && setup.odometry_error < 1.0))
     throw std::invalid_argument("robot " + setup.name + ": the odometry error must be in [0, 1)");
   return setup;
 }
 
-Body placed(const RobotSetup& setup, const World& world) {
+Body placed(const RobotSetup& setup, const Surroundings& around) {
   try {
-    return Body(setup.model.outline, setup.start, world);
+    return Body(setup.model.outline, setup.start, around);
   } catch (const std::invalid_argument&) {
-    throw std::invalid_argument("robot " + setup.name + " starts in or against an obstacle");
+    const Room room = around.room(setup.model.outline, setup.start);
+    throw std::invalid_argument("robot " + setup.name + " starts in or against " +
+                                (room.other ? "robot " + room.other->name() : "an obstacle"));
   }
 }
 
@@ -29,33 +33,38 @@ bool due(Duration period, Duration before, Duration now) { return now / period >
 
 }  // namespace
 
-Robot::Robot(RobotSetup setup, std::uint64_t seed, const World& world)
+Robot::Robot(RobotSetup setup, std::uint64_t seed, const Surroundings& around)
     : setup_(valid(std::move(setup))),
       random_(seed, setup_.name),
-      drive_(setup_.model.drive),
-      body_(placed(setup_, world)),
+      drive_(setup_.model.drive, setup_.command_timeout),
+      body_(placed(setup_, around)),
       odometry_(setup_.start, setup_.odometry_error, random_),
       sonars_(setup_.model.sonars, setup_.sonar) {
   sonar_scan_.ranges.resize(sonars_.size());
-  measure_sonar(world, Duration::zero());
-  measure_odometry(Duration::zero());
 }
 
-void Robot::step(const World& world, Duration now, Duration dt) {
-  const Moved moved = body_.move(drive_.step(now, dt), world);
+void Robot::drive(const Surroundings& around, Duration now, Duration dt) {
+  const Moved moved = body_.move(drive_.step(now, dt), around);
   if (moved.stopped_driving) drive_.stop_driving();
   if (moved.stopped_turning) drive_.stop_turning();
   odometry_.add(moved.motion);
-
-  const Duration after = now + dt;
-  if (due(setup_.odometry_period, now, after)) measure_odometry(after);
-  if (due(setup_.sonar_period, now, after)) measure_sonar(world, after);
 }
 
-void Robot::measure_sonar(const World& world, Duration now) {
+void Robot::measure(const Surroundings& around, Duration before, Duration now) {
+  body_.look(around);
+  if (due(setup_.odometry_period, before, now)) measure_odometry(now);
+  if (due(setup_.sonar_period, before, now)) measure_sonar(around, now);
+}
+
+void Robot::measure_first(const Surroundings& around) {
+  measure_sonar(around, Duration::zero());
+  measure_odometry(Duration::zero());
+}
+
+void Robot::measure_sonar(const Surroundings& around, Duration now) {
   sonar_scan_.stamp = now;
   const auto scan = static_cast<std::uint64_t>(now / setup_.sonar_period);
-  sonars_.measure(world, body_.pose(), random_, scan, sonar_scan_.ranges);
+  sonars_.measure(around, body_.pose(), random_, scan, sonar_scan_.ranges);
 }
 
 void Robot::measure_odometry(Duration now) {

@@ -11,7 +11,7 @@
 #include "sim/random.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/sonar.hpp"
-#include "sim/world.hpp"
+#include "sim/surroundings.hpp"
 
 namespace kervan::sim {
 
@@ -24,6 +24,7 @@ struct RobotSetup {
   double odometry_error = 0.0;  ///< bound of the scale errors, per metre and per radian
   Duration sonar_period = std::chrono::milliseconds(100);
   Duration odometry_period = std::chrono::milliseconds(50);
+  Duration command_timeout = std::chrono::milliseconds(250);  ///< see DifferentialDrive
 };
 
 /// One round of all sonars; see Sonars::measure for the ranges.
@@ -41,14 +42,23 @@ struct OdometryReading {
 
 class Robot {
  public:
-  /// Measures once, at time 0. Throws std::invalid_argument, naming the robot, if the model or a setting cannot be or
-  /// there is no room for it at its start.
-  Robot(RobotSetup setup, std::uint64_t seed, const World& world);
+  /// Throws std::invalid_argument, naming the robot, if the model or a setting cannot be or there is no room for it at
+  /// its start.
+  Robot(RobotSetup setup, std::uint64_t seed, const Surroundings& around);
 
   void command(const Twist2& wanted, Duration now) { drive_.command(wanted, now); }
 
-  /// Drives from `now` to `now + dt`, then measures with those sensors that are due.
-  void step(const World& world, Duration now, Duration dt);
+  /// Drives from `now` to `now + dt`.
+  void drive(const Surroundings& around, Duration now, Duration dt);
+
+  /// When everybody has driven: sees how near the others are, and measures with the sensors that are due after `before`
+  /// and not after `now`.
+  void measure(const Surroundings& around, Duration before, Duration now);
+
+  /// Measures with all sensors at time 0.
+  void measure_first(const Surroundings& around);
+
+  void touched_by(const std::string& other, const Vector2& point) { body_.touched_by(other, point); }
 
   const RobotSetup& setup() const { return setup_; }
   const std::string& name() const { return setup_.name; }
@@ -64,7 +74,7 @@ class Robot {
   const OdometryReading& odometry() const { return odometry_reading_; }
 
  private:
-  void measure_sonar(const World& world, Duration now);
+  void measure_sonar(const Surroundings& around, Duration now);
   void measure_odometry(Duration now);
 
   RobotSetup setup_;

@@ -39,6 +39,7 @@ struct RobotParams {
   double drift = 0.0;
   Duration odometry_period = 50ms;
   Duration sonar_period = 100ms;
+  Duration command_timeout = 250ms;
   std::int64_t sonar_rays = 32;
   double sonar_noise = 0.01;
   double sonar_drop_out = 0.0;
@@ -52,6 +53,8 @@ struct RobotParams {
       {.min = 0.0, .max = 0.5, .help = "Bound of the odometry's errors per metre and per radian, drawn once per run."});
     v(odometry_period, "odometry_period", {.min = 0.001, .max = 10.0, .help = "Time between two odometry readings."});
     v(sonar_period, "sonar_period", {.min = 0.001, .max = 10.0, .help = "Time between two rounds of all sonars."});
+    v(command_timeout, "command_timeout",
+      {.min = 0.01, .max = 10.0, .help = "The drive brakes fully no later than this after the last command."});
     v(sonar_rays, "sonar_rays",
       {.min = 1, .max = 1024, .help = "Rays in the cone of a sonar; 1 is its axis alone, as in Stage."});
     v(sonar_noise, "sonar_noise",
@@ -69,6 +72,7 @@ struct RobotParams {
     setup.odometry_error = drift;
     setup.odometry_period = odometry_period;
     setup.sonar_period = sonar_period;
+    setup.command_timeout = command_timeout;
     setup.sonar = {.rays = static_cast<int>(sonar_rays), .noise = sonar_noise, .drop_out = sonar_drop_out};
     if (sonar_incidence_limit < any_angle) setup.sonar.incidence_limit = sonar_incidence_limit;
     return setup;
@@ -143,13 +147,13 @@ class RobotPorts {
       : odom_frame_(name + "/odom"),
         base_frame_(name + "/base_link"),
         cmd_vel_(owner, name + "/cmd_vel", qos::command.optional(),
-                 "Speed wanted of " + name + "; it brakes 250 ms after the last one."),
+                 "Speed wanted of " + name + "; it brakes command_timeout after the last one."),
         sonar_(owner, name + "/sonar", qos::sensor, "What the sonars of " + name + " measure; +inf without an echo."),
         odom_(owner, name + "/odom", qos::sensor, "Pose and speed of " + name + " by its own wheels."),
         truth_(owner, name + "/truth", qos::state, "True pose in map and true speed of " + name + ", every step."),
         contact_(owner, name + "/contact", qos::event, "Each time " + name + " begins to touch something."),
         clearance_(owner, name + "/clearance", qos::state,
-                   "Least distance of the hull of " + name + " to any obstacle so far.") {}
+                   "Least distance of the hull of " + name + " to any obstacle or robot so far.") {}
 
   /// Hands the drive what has been commanded since the last step.
   void steer(Simulation& simulation, std::size_t robot) {
@@ -219,7 +223,7 @@ class RobotPorts {
       auto message = contact_.loan();
       geometry::set_header(message->header, now, "map");
       message->robot = robot.name();
-      message->other = "world";
+      message->other = body.last_contact().other.empty() ? "world" : body.last_contact().other;
       message->point.x = body.last_contact().point.x();
       message->point.y = body.last_contact().point.y();
       message->count = static_cast<std::uint32_t>(contacts_);
@@ -269,7 +273,13 @@ class SimulatorComponent final : public Component {
     const auto world = std::make_shared<const World>(load_world(params_.map.path));
     std::vector<RobotSetup> setups;
     for (const auto& [name, robot] : params_.robots) {
-      setups.push_back(robot.setup(name));
+      RobotSetup setup = robot.setup(name);
+      for (const RobotSetup& other : setups) {
+        const PlacedBody body(other.name, other.model.outline, other.start);
+        if (!(clearance(body, setup.model.outline, setup.start).distance > 0.0))
+          throw ParameterError("robots." + name + ".start", "the robot would stand in " + other.name);
+      }
+      setups.push_back(std::move(setup));
       if (!(world->clearance(setups.back().model.outline, robot.start).distance > 0.0))
         throw ParameterError("robots." + name + ".start", "the robot would stand in an obstacle of " + world->name());
     }
@@ -312,7 +322,8 @@ class SimulatorComponent final : public Component {
       const std::uint64_t contacts = ports_[i].contacts();
       ports_[i].publish(robot, simulation_.now(), now, *frames, params_.map_to_odom);
       if (ports_[i].contacts() != contacts)
-        log().info("{} touches something at ({:.2f}, {:.2f}), contact {}", robot.name(),
+        log().info("{} touches {} at ({:.2f}, {:.2f}), contact {}", robot.name(),
+                   robot.body().last_contact().other.empty() ? "something" : robot.body().last_contact().other,
                    robot.body().last_contact().point.x(), robot.body().last_contact().point.y(), ports_[i].contacts());
     }
     if (!frames->transforms.empty()) tf_.publish(std::move(frames));

@@ -16,18 +16,21 @@ Sonars::Sonars(const SonarRing& ring, const SonarSettings& settings) : ring_(rin
 
   // Each ray stands in the middle of an equal share of the cone: 32 rays in 30 degrees end at 14.53 degrees.
   const double share = ring.field_of_view / settings.rays;
-  for (const Pose2& pose : ring.poses)
+  for (const Pose2& pose : ring.poses) {
+    reach_ = std::max(reach_, pose.position().norm() + ring.max_range);
     for (int i = 0; i < settings.rays; ++i)
       directions_.push_back(geometry::heading(pose.yaw - 0.5 * ring.field_of_view + (i + 0.5) * share));
+  }
 }
 
-void Sonars::measure(const World& world, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
+void Sonars::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
                      std::span<double> ranges) const {
   assert(ranges.size() == size());
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  const std::vector<const PlacedBody*> robots = around.robots_within(pose.position(), reach_);
   const auto rays = static_cast<std::size_t>(settings_.rays);
   for (std::size_t i = 0; i < size(); ++i) {
-    double range = echo(world, pose * ring_.poses[i].position(), {&directions_[i * rays], rays}, c, s);
+    double range = echo(around.world(), robots, pose * ring_.poses[i].position(), {&directions_[i * rays], rays}, c, s);
     // Both numbers are drawn always, so that one imperfection does not change what the other does.
     auto sequence = random.at(RandomUse::sonar, static_cast<std::uint16_t>(i), scan);
     const bool dropped = sequence.uniform() < settings_.drop_out;
@@ -37,12 +40,15 @@ void Sonars::measure(const World& world, const Pose2& pose, const RandomSource& 
   }
 }
 
-double Sonars::echo(const World& world, const Vector2& origin, std::span<const Vector2> directions, double c,
-                    double s) const {
+double Sonars::echo(const World& world, Robots robots, const Vector2& origin, std::span<const Vector2> directions,
+                    double c, double s) const {
   double nearest = infinity;
   for (const Vector2& d : directions) {
     const Vector2 direction(c * d.x() - s * d.y(), s * d.x() + c * d.y());
-    const auto hit = world.cast({origin, direction}, std::min(nearest, ring_.max_range));
+    const double range = std::min(nearest, ring_.max_range);
+    auto hit = world.cast({origin, direction}, range);
+    const auto on_robot = cast(robots, {origin, direction}, range);
+    if (on_robot && (!hit || on_robot->distance < hit->distance)) hit = on_robot;
     if (!hit || hit->distance >= nearest) continue;
     if (settings_.incidence_limit && -direction.dot(hit->normal) < min_cosine_) continue;
     nearest = hit->distance;

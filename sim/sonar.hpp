@@ -8,7 +8,7 @@
 
 #include "sim/random.hpp"
 #include "sim/robot_model.hpp"
-#include "sim/world.hpp"
+#include "sim/surroundings.hpp"
 
 namespace kervan::sim {
 
@@ -32,16 +32,20 @@ class Sonars {
   /// What each sonar reads with the robot at `pose`, in m, into `ranges` (size() of them): the distance from the
   /// transducer to the nearest echo in [min_range, max_range], or +infinity without an echo within max_range (REP 117),
   /// which says that the cone is free that far or that nothing came back. `scan` numbers the scans of a run.
-  void measure(const World& world, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
+  void measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
                std::span<double> ranges) const;
 
  private:
-  /// Distance to the nearest echo before noise; infinity if there is none.
-  double echo(const World& world, const Vector2& origin, std::span<const Vector2> directions, double c, double s) const;
+  using Robots = std::span<const PlacedBody* const>;
+
+  /// Distance to the nearest echo before noise, of the world or of one of the robots; infinity if there is none.
+  double echo(const World& world, Robots robots, const Vector2& origin, std::span<const Vector2> directions, double c,
+              double s) const;
 
   SonarRing ring_;
   SonarSettings settings_;
   double min_cosine_ = 0.0;          // of the incidence angle
+  double reach_ = 0.0;               // m from base_link that any of them hears
   std::vector<Vector2> directions_;  // of all rays in base_link, `rays` for each sonar
 };
 

@@ -45,8 +45,8 @@ TEST(Simulation, TheSameSeedGivesTheSameHistoryToTheLastBit) {
   EXPECT_NE(history(robots, "r1", 3), history(robots, "r1", 4));
 }
 
-TEST(Simulation, ARobotsHistoryDoesNotDependOnTheOthersOrOnTheirOrder) {
-  const RobotSetup a = imperfect("r1", {0.0, 0.0, 0.6}), b = imperfect("r2", {5.0, 2.0, 1.0}),
+TEST(Simulation, ARobotsHistoryDoesNotDependOnThoseOutOfItsSightOrOnTheirOrder) {
+  const RobotSetup a = imperfect("r1", {0.0, 0.0, 0.6}), b = imperfect("r2", {20.0, 2.0, 1.0}),
                    c = imperfect("r3", {12.0, 12.0, -1.0});
   const auto alone = history({b}, "r2", 1);
   EXPECT_EQ(alone, history({a, b, c}, "r2", 1));
@@ -107,6 +107,18 @@ TEST(Simulation, ARobotWithoutCommandsBrakesFromAQuarterOfASecondOn) {
   EXPECT_LT(simulation.robots()[0].speed().linear, 0.5);
 }
 
+TEST(Simulation, TheTimeOutOfTheDriveIsTheRobots) {
+  RobotSetup setup = perfect("r1", {});
+  setup.command_timeout = 100ms;
+  Simulation simulation(lab(), {setup}, 1);
+  simulation.command(0, {0.5, 0.0});
+  for (int i = 0; i < 10; ++i) simulation.step(tick);
+  const double fastest = simulation.robots()[0].speed().linear;
+  EXPECT_GT(fastest, 0.0);
+  simulation.step(tick);
+  EXPECT_LT(simulation.robots()[0].speed().linear, fastest);
+}
+
 std::string refusal(std::vector<RobotSetup> robots) {
   try {
     Simulation(lab(), std::move(robots), 1);
@@ -119,9 +131,14 @@ std::string refusal(std::vector<RobotSetup> robots) {
 TEST(Simulation, SaysWhichRobotCannotBe) {
   EXPECT_EQ(refusal({perfect("r1", {}), perfect("r1", {3.0, 3.0, 0.0})}), "two robots have the name r1");
   EXPECT_EQ(refusal({perfect("r1", {8.2, 6.5, 0.0})}), "robot r1 starts in or against an obstacle");
+  EXPECT_EQ(refusal({perfect("r1", {1.0, 1.0, 0.0}), perfect("r2", {1.3, 1.0, 0.0})}),
+            "robot r2 starts in or against robot r1");
   RobotSetup setup = perfect("r2", {});
   setup.sonar_period = 0ms;
   EXPECT_EQ(refusal({setup}), "robot r2: the periods of its sensors must be positive");
+  setup = perfect("r2", {});
+  setup.command_timeout = 0ms;
+  EXPECT_EQ(refusal({setup}), "robot r2: the time-out of its drive must be positive");
   setup = perfect("r2", {});
   setup.odometry_error = 1.5;
   EXPECT_EQ(refusal({setup}), "robot r2: the odometry error must be in [0, 1)");
