@@ -92,7 +92,7 @@ runtime::RunReport Running::report() {
 }
 
 std::string Running::log() const {
-  std::ifstream stream(container_.spec().run_folder / "log.txt");
+  std::ifstream stream(container_.spec().run_folder / ("log-" + container_.spec().name + ".txt"));
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();
