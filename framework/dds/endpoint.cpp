@@ -130,7 +130,7 @@ class ReaderCache {
     const bool dispose = sample->statusinfo & NN_STATUSINFO_DISPOSE;
     if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !dispose && sample->kind != SDK_DATA) return;
     hold(instance);
-    sink_.on_sample({as_block(sample), writer.iid, instance->m_iid, writer.ownership_strength});
+    sink_.on_sample({as_block(sample), writer.iid, as_block(sample)->instance, writer.ownership_strength});
     if (dispose) let_go(instance);
   }
 

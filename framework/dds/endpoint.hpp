@@ -59,7 +59,7 @@ struct MatchedPeer {
 struct Arrival {
   SampleBlock* block;      ///< not retained; retain it to keep it
   std::uint64_t writer;    ///< Cyclone's instance handle of the writer
-  std::uint64_t instance;  ///< the same for equal keys, as long as the domain lives
+  std::uint64_t instance;  ///< the same for equal keys, in every process and run; 0 for keyless types
   std::int32_t strength;   ///< the writer's ownership strength
 };
 

@@ -372,7 +372,8 @@ void seal(SampleBlock* block) {
   support.key_bytes(block->value, block->key);
   Hash64 hash;
   hash.bytes(block->key.data(), block->key.size());
-  block->hash = static_cast<std::uint32_t>(hash.value()) ^ block->type->serdata_basehash;
+  block->instance = hash.value();
+  block->hash = static_cast<std::uint32_t>(block->instance) ^ block->type->serdata_basehash;
 }
 
 void retain(SampleBlock* block) noexcept { ddsi_serdata_ref(block); }

@@ -43,6 +43,7 @@ struct SampleBlock : KeyedBlock {
   SampleBlock* next_free = nullptr;
   std::size_t pooled_bytes = 0;  ///< what the block accounts for while it lies in the pool
   Time received{};               ///< on the composition's clock; the publishing time for a local sample
+  std::uint64_t instance = 0;    ///< hash of the key, the same in every process; 0 for keyless types
   void* value = nullptr;         ///< behind this struct, suitably aligned
 };
 
@@ -99,7 +100,7 @@ struct SampleType : ddsi_sertype {
 /// Makes the (unregistered) Cyclone type of `support`.
 SampleType* make_sample_type(const TypeSupport& support);
 
-/// Sets the block's key and hash from its value; for keyless types just the hash.
+/// Sets the block's key, hash and instance from its value; nothing for keyless types.
 void seal(SampleBlock* block);
 
 }  // namespace kervan::dds

@@ -71,6 +71,8 @@ std::string Fences::not_found() const {
 std::uint64_t Fences::hash_of_run() const {
   Hash64 hash;
   for (const Member& member : members_) hash.text(member.name);
+  for (const ComponentSpec& component : container_.spec().components)
+    for (const std::string* text : {&component.name, &component.type}) hash.text(*text);
   for (const auto* endpoints : {&matching_.writers(), &matching_.readers()})
     for (const CompositionEndpoint& endpoint : *endpoints)
       for (const std::string* text : {&endpoint.name, &endpoint.topic, &endpoint.container}) hash.text(*text);

@@ -81,6 +81,8 @@ std::size_t Peer::lines_that_begin_with(const std::string& beginning) {
       std::count_if(said.begin(), said.end(), [&](const std::string& line) { return line.starts_with(beginning); }));
 }
 
+void Peer::signal(int number) { kill(pid_, number); }
+
 int Peer::end() {
   close_stdin();
   int status = 0;

@@ -27,6 +27,7 @@ class Peer {
   bool has_said(const std::string& line);
   std::size_t lines_that_begin_with(const std::string& beginning);
 
+  void signal(int number);
   /// Asks it to end and waits for that; its exit code, 128 + the signal that ended it, or -1 if it does not end.
   int end();
 
