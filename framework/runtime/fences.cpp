@@ -26,8 +26,6 @@ constexpr Duration kLease = 1500ms;
 constexpr Duration kAssertPeriod = 250ms;
 /// A handler may take so long before its container counts as stuck.
 constexpr Duration kLongestHandler = 60s;
-/// After so long, and again after as long, whoever waits says for what.
-constexpr Duration kPatience = 5s;
 /// Cyclone watches the lease and otherwise carries: "keep all" of a fence is two samples.
 QosProfile fence_profile() {
   return {.name = "fence", .depth = 0, .liveliness = Liveliness::manual, .lease = kLease, .trace = false};

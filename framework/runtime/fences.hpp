@@ -70,6 +70,9 @@ class Fences final : public dds::SampleSink {
   void on_status() noexcept override {}
 
  private:
+  /// After so long, and again after as long, whoever waits says for what.
+  static constexpr Duration kPatience = std::chrono::seconds(5);
+
   struct Member {
     std::string name;
     bool there = false;                         ///< its fence endpoints and ours are matched

@@ -18,8 +18,6 @@ using Steady = std::chrono::steady_clock;
 
 /// Matching takes some milliseconds, once in a run, and is asked about so often.
 constexpr Duration kMatchingPeriod = 2ms;
-/// After so long, and again after as long, a person is told who is waited for.
-constexpr Duration kPatience = 5s;
 constexpr std::size_t kPairsNamed = 3;
 
 RunReport cannot_begin(std::string reason) { return {.end = RunEnd::peer_lost, .reason = std::move(reason)}; }

@@ -142,13 +142,11 @@ PortCounters InputPort::counters() const {
   return counters;
 }
 
-void InputPort::stage_one(const dds::Arrival& arrival, Time now) {
-  const bool ordered = clock_ == ClockMode::lockstep;
-  const bool needs_writer = ordered || binding_.profile.ownership == Ownership::exclusive ||
-                            binding_.profile.liveliness == Liveliness::manual;
-  const unsigned writer = needs_writer ? owner_.container().writer_index(*this, arrival.writer) : 0;
-  const Time received = ordered ? now : dds::received_at(arrival.block);
-  staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
+/// Its place in the composition, where that matters.
+unsigned InputPort::writer_of(const dds::Arrival& arrival) const {
+  const bool matters = clock_ == ClockMode::lockstep || binding_.profile.ownership == Ownership::exclusive ||
+                       binding_.profile.liveliness == Liveliness::manual;
+  return matters ? owner_.container().writer_index(*this, arrival.writer) : 0;
 }
 
 void InputPort::stage(Time now) {
@@ -158,12 +156,15 @@ void InputPort::stage(Time now) {
   const std::vector<std::uint64_t> gone = std::exchange(gone_, {});
   const std::vector<std::uint64_t> lost = std::exchange(lost_, {});
   unlock();
+  const bool ordered = clock_ == ClockMode::lockstep;
   staged_.clear();
   const auto stage_if_due = [&](const dds::Arrival& arrival) {
     CountedWriters::Writer* const elsewhere = counted_.find(arrival.writer);
     if (elsewhere && elsewhere->staged == elsewhere->allowed) return false;
     if (elsewhere) ++elsewhere->staged;
-    stage_one(arrival, now);
+    const unsigned writer = elsewhere ? elsewhere->index : writer_of(arrival);
+    const Time received = ordered ? now : dds::received_at(arrival.block);
+    staged_.push_back({arrival.block, writer, arrival.instance, arrival.strength, received});
     return true;
   };
   std::erase_if(early_, stage_if_due);
@@ -171,9 +172,8 @@ void InputPort::stage(Time now) {
     if (!stage_if_due(arrived_[i])) early_.push_back(arrived_[i]);
   arrived_.clear();
   // Each writer's samples arrived in the order of their sequence, so sorting by writer gives (writer, sequence).
-  if (clock_ == ClockMode::lockstep)
-    std::stable_sort(staged_.begin(), staged_.end(),
-                     [](const StagedSample& a, const StagedSample& b) { return a.writer < b.writer; });
+  if (ordered && !std::ranges::is_sorted(staged_, {}, &StagedSample::writer))
+    std::ranges::stable_sort(staged_, {}, &StagedSample::writer);
   cache_.stage(staged_);
   for (const std::uint64_t writer : gone) cache_.writer_gone(owner_.container().writer_index(*this, writer));
   for (const std::uint64_t writer : lost) cache_.writer_lost(owner_.container().writer_index(*this, writer));

@@ -80,7 +80,7 @@ class InputPort final : public dds::SampleSink {
   void unlock() const noexcept { spin_.clear(std::memory_order_release); }
 
   void mark_ready() noexcept;
-  void stage_one(const dds::Arrival& arrival, Time now);
+  unsigned writer_of(const dds::Arrival& arrival) const;
 
   InputBase& input_;
   PortBinding binding_;
