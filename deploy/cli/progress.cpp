@@ -48,7 +48,11 @@ void Progress::say(const std::string& text) {
 }
 
 void Progress::say_for_now(const std::string& text) {
-  if (!terminal_) return say(text);
+  if (!terminal_) {
+    if (text != said_) say(text);
+    said_ = text;
+    return;
+  }
   std::fputs(("\r" + text + "\033[K").c_str(), stderr);
   std::fflush(stderr);
   shown_ = true;

@@ -18,8 +18,9 @@ class Progress {
 
   void show(Duration simulated);
 
-  /// A line that stays, or on a terminal one that the next call replaces.
+  /// A line that stays.
   void say(const std::string& text);
+  /// On a terminal a line that the next call replaces; elsewhere one that is not repeated.
   void say_for_now(const std::string& text);
 
   /// The run is over: on a terminal the bar stays as it was at the end, with the speed of the whole run.
@@ -31,6 +32,7 @@ class Progress {
   Duration expected_;
   bool terminal_;
   bool shown_ = false;
+  std::string said_;  ///< for now
   std::chrono::steady_clock::time_point start_;
   std::chrono::steady_clock::time_point last_;
 };

@@ -56,7 +56,7 @@ supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition&
                                          const RunEvents& events) {
   supervisor::SupervisorConfig config;
   config.program = container_program();
-  config.spec_folder = options.run_folder;
+  config.spec_folder = fs::absolute(options.run_folder);
   config.limit = options.time_limit;
   for (std::size_t i = 0; i < specs.size(); ++i)
     config.containers.push_back({std::move(specs[i]), composition.source.containers[i].restart});

@@ -14,9 +14,8 @@ std::optional<Duration> RestartBudget::spend(SteadyTime now, Duration active) {
   while (!recent_.empty() && now - recent_.front() > limits_.window) recent_.pop_front();
   if (recent() >= limits_.max) return std::nullopt;
   recent_.push_back(now);
-  ++total_;
   delay_ = delay_ == Duration::zero() || active >= kLongEnough ? limits_.backoff
-                                                                : std::min(2 * delay_, limits_.longest_backoff);
+                                                               : std::min(2 * delay_, limits_.longest_backoff);
   return delay_;
 }
 

@@ -22,7 +22,6 @@ class RestartBudget {
   /// if there have been too many.
   std::optional<Duration> spend(SteadyTime now, Duration active);
 
-  int total() const { return total_; }
   /// Restarts within the window that ended with the last call of spend().
   int recent() const { return static_cast<int>(recent_.size()); }
 
@@ -33,7 +32,6 @@ class RestartBudget {
   composition::Restart limits_;
   std::deque<SteadyTime> recent_;
   Duration delay_{};  ///< the last one; zero before the first
-  int total_ = 0;
 };
 
 }  // namespace kervan::supervisor

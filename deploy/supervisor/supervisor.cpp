@@ -12,6 +12,7 @@
 #include <map>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "deploy/container/spec_json.hpp"
 #include "deploy/container/specification.hpp"
@@ -107,6 +108,7 @@ struct Supervisor::Managed {
   bool on_its_own = false;  ///< holds a component in quarantine: what becomes of it does not concern the run
   std::string last_exit;
   pid_t last_pid = 0;
+  int restarts = 0;
   container::Counters earlier;  ///< of processes that are gone
 
   // Of the process that runs, or ran last.
@@ -142,7 +144,7 @@ void Supervisor::say(const std::string& text) const {
 SupervisedRun Supervisor::run() {
   const SignalGuard signals;
   signals_ = signals.descriptor();
-  started_ = all_active_ = shown_ = now();
+  active_since_ = shown_ = now();
   for (const auto& container : containers_)
     if (end_ == End::running) start(*container);
   while (!all_gone()) {
@@ -167,7 +169,7 @@ SupervisedRun Supervisor::run() {
     show();
   }
   if (end_ == End::running) ending_since_ = now();
-  result_.wall_s = std::chrono::duration<double>(ending_since_ - all_active_).count();
+  result_.wall_s = std::chrono::duration<double>(ending_since_ - active_since_).count();
   for (const auto& container : containers_) result_.containers.push_back(record_of(*container));
   return std::move(result_);
 }
@@ -196,6 +198,7 @@ void Supervisor::start(Managed& container) {
     abort("the container " + container.name() + " cannot be started: " + error.what());
     return;
   }
+  if (container.last_pid != 0) ++container.restarts;
   container.last_pid = container.process->pid();
   container.control_open = true;
   container.heard = now();
@@ -230,6 +233,7 @@ void Supervisor::read_signals() {
     if (signal == SIGCHLD) continue;  // only wakes us up: who it was is found out elsewhere
     if (result_.signal == 0) {
       result_.signal = signal == SIGINT ? SIGINT : SIGTERM;
+      say(container::signal_name(signal) + ": the containers are told to end; another one kills them");
       begin_ending(End::quick);
     } else {
       begin_ending(End::at_once);
@@ -256,10 +260,9 @@ void Supervisor::take(Managed& container, container::Message message) {
     if (*phase != Phase::active) return;
     container.active_since = now();
     container.ever_active = true;
-    if (!were_all_active_ && std::ranges::all_of(containers_, [](const auto& one) { return one->ever_active; })) {
-      were_all_active_ = true;
-      all_active_ = now();
-    }
+    if (!std::exchange(was_active_, true)) active_since_ = now();
+    were_all_active_ =
+        were_all_active_ || std::ranges::all_of(containers_, [](const auto& one) { return one->ever_active; });
   } else if (const auto* progress = std::get_if<container::Progress>(&message)) {
     container.progress = *progress;
   } else if (auto* crash = std::get_if<Crash>(&message)) {
@@ -307,7 +310,7 @@ void Supervisor::handle_death(Managed& container, int status) {
   const std::string who = "the container " + container.name() + " ";
   if (container.failure && container.failure->configuration && !container.ever_active)
     return abort("container " + container.name() + ": " + container.failure->message, true);
-  const std::string when = " at " + decimal(container.progress.simulated_s, "%.2f s");
+  const std::string when = " at " + time_of_death(container);
   if (clock_ == ClockMode::lockstep)
     return abort(who + cause + when + "; under clock lockstep no container is started again");
   if (container.name() == time_keeper_) return abort(who + cause + when + "; it keeps the time, so the run is over");
@@ -415,7 +418,7 @@ void Supervisor::show() {
   if (were_all_active_) {
     double simulated = 0.0;
     for (const auto& container : containers_) simulated = std::max(simulated, container->progress.simulated_s);
-    if (clock_ == ClockMode::wall) simulated = std::chrono::duration<double>(now() - all_active_).count();
+    if (clock_ == ClockMode::wall) simulated = std::chrono::duration<double>(now() - active_since_).count();
     if (events_.progress) events_.progress(from_seconds(simulated));
   } else if (events_.waiting && now() - shown_ >= kPatience) {
     shown_ = now();
@@ -431,9 +434,16 @@ void Supervisor::show() {
 }
 
 ContainerRecord Supervisor::record_of(const Managed& container) const {
-  ContainerRecord record{container.name(), container.last_pid, container.budget.total(), container.last_exit,
-                         container.earlier};
-  return record;
+  return {container.name(), container.last_pid, container.restarts, container.last_exit, container.earlier};
+}
+
+/// When the container died, on the composition's clock: by its crash report, else as far as anybody had come.
+std::string Supervisor::time_of_death(const Managed& container) const {
+  double time = 0.0;
+  for (const auto& one : containers_) time = std::max(time, one->progress.simulated_s);
+  if (container.crash && container.crash->time_ns > 0 && clock_ != ClockMode::wall)
+    time = seconds(Duration(container.crash->time_ns));
+  return decimal(time, "%.2f s");
 }
 
 }  // namespace kervan::supervisor

@@ -53,7 +53,7 @@ struct SupervisedRun {
   std::string aborted;                ///< why the supervisor ended the run; empty if it did not
   bool unusable = false;              ///< `aborted` is a mistake in the configuration
   int signal = 0;                     ///< SIGINT or SIGTERM, if one asked for the end
-  double wall_s = 0.0;                ///< from the moment when all were active
+  double wall_s = 0.0;                ///< from the moment when the first container was active
 };
 
 class Supervisor {
@@ -93,6 +93,7 @@ class Supervisor {
   SteadyTime now() const { return std::chrono::steady_clock::now(); }
   void say(const std::string& text) const;
   ContainerRecord record_of(const Managed& container) const;
+  std::string time_of_death(const Managed& container) const;
 
   SupervisorConfig config_;
   SupervisorEvents events_;
@@ -101,7 +102,8 @@ class Supervisor {
   std::string time_keeper_;  ///< the container that writes /clock; empty unless under clock sim
   int signals_ = -1;         ///< a descriptor that tells of signals
   End end_ = End::running;
-  SteadyTime started_{}, all_active_{}, ending_since_{}, shown_{};
+  SteadyTime active_since_{}, ending_since_{}, shown_{};
+  bool was_active_ = false;  ///< some container
   bool were_all_active_ = false;
   SupervisedRun result_;
 };
