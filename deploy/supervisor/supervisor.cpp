@@ -116,7 +116,7 @@ struct Supervisor::Managed {
   container::ControlReader reader;
   bool control_open = false;
   Phase phase = Phase::starting;
-  SteadyTime active_since{}, heard{};
+  SteadyTime active_since{}, heard{}, ended{};
   std::optional<Crash> crash;
   std::optional<Failure> failure;
   std::optional<EndReport> report;
@@ -260,6 +260,9 @@ void Supervisor::take(Managed& container, container::Message message) {
     if (*phase != Phase::active) return;
     container.active_since = now();
     container.ever_active = true;
+    if (container.restarts > 0)
+      say("the container " + container.name() + " is active again, " +
+          decimal(std::chrono::duration<double>(now() - container.ended).count(), "%.2f s") + " after its end");
     if (!std::exchange(was_active_, true)) active_since_ = now();
     were_all_active_ =
         were_all_active_ || std::ranges::all_of(containers_, [](const auto& one) { return one->ever_active; });
@@ -277,6 +280,7 @@ void Supervisor::take(Managed& container, container::Message message) {
 void Supervisor::handle_exit(Managed& container, int status) {
   read_control(container);  // its last words may still be in the pipe
   container.state = Managed::State::stopped;
+  container.ended = now();
   container.last_exit = exit_text(status);
   if (container.report)
     handle_report(container);
