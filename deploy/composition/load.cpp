@@ -67,7 +67,7 @@ Domain read_domain(const Node& node) {
 }
 
 Restart read_restart(const Node& node) {
-  node.only_keys({"policy", "max", "window", "quarantine"});
+  node.only_keys({"policy", "max", "window", "backoff", "quarantine"});
   Restart restart;
   const std::string policy = node.required("policy").as_choice({"never", "on-failure", "always", "quarantine"});
   restart.policy = policy == "never"    ? RestartPolicy::never
@@ -81,6 +81,12 @@ Restart read_restart(const Node& node) {
   if (const Node* window = node.optional("window")) {
     restart.window = window->as_duration();
     if (restart.window <= Duration::zero()) window->fail(window->shown() + " is out of range; allowed: more than 0 s");
+  }
+  if (const Node* backoff = node.optional("backoff")) {
+    restart.backoff = backoff->as_duration();
+    if (restart.backoff <= Duration::zero() || restart.backoff > restart.longest_backoff)
+      backoff->fail(backoff->shown() + " is out of range; allowed: more than 0 s, at most " +
+                    duration_text(restart.longest_backoff));
   }
   if (policy == "quarantine") restart.quarantine = std::min(3, restart.max);
   if (const Node* quarantine = node.optional("quarantine")) {

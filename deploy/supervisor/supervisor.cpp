@@ -43,8 +43,9 @@ struct Ladder {
 };
 /// The run is over: all end by themselves, and write their files on the way.
 constexpr Ladder kOrderly{500ms, 2s, 8s, 9s};
-/// Somebody wants it to end: everything is gone within 3 s.
-constexpr Ladder kQuick{0s, 1s, 2s, 2500ms};
+/// Somebody wants it to end, or something broke: everything is gone within 3 s. Under lockstep those who are left
+/// notice within 2 s that somebody is missing, and end with what results there are.
+constexpr Ladder kQuick{0s, 1s, 2400ms, 2800ms};
 
 /// Takes the signals that end a run, and those about children, off their usual way: they are read from a descriptor.
 class SignalGuard {
@@ -376,6 +377,7 @@ bool Supervisor::quarantine(Managed& container) {
 
 void Supervisor::abort(const std::string& why, bool unusable) {
   if (result_.aborted.empty()) {
+    if (!unusable) say(why);
     result_.aborted = why;
     result_.unusable = unusable;
   }

@@ -24,7 +24,7 @@ using Clock = std::chrono::steady_clock;
 constexpr double kFullBraking = 0.6;  ///< m/s2, of robots/p3dx.yaml
 constexpr double kLongest = 0.250;    ///< s, from the last fresh command to the beginning of full braking
 constexpr double kStanding = 0.05;    ///< m/s
-constexpr const char* kVictims[] = {"plan", "control", "safety", "observe"};
+constexpr const char* kVictims[] = {"control", "safety", "plan", "observe"};
 
 int number_from(const char* variable, int otherwise) {
   const char* text = std::getenv(variable);
@@ -53,12 +53,17 @@ class Load {
   std::vector<std::thread> threads_;
 };
 
-std::string composition(bool short_way) {
+/// After so short a wait a container is back before anybody misses it; after so long a one the robot must have braked.
+constexpr const char* kSoon = "100ms";
+constexpr const char* kLate = "600ms";
+
+std::string composition(bool short_way, const std::string& backoff) {
+  const std::string restart = ", restart: {policy: on-failure, max: 1000, backoff: " + backoff + "}";
   std::string text = lab_over({{"sim", "[world, recorder]"},
-                               {"plan", "[r1/planner, r1/follower], restart: {policy: on-failure, max: 1000}"},
-                               {"control", "[r1/control], restart: {policy: on-failure, max: 1000}"},
-                               {"safety", "[r1/guard], restart: {policy: on-failure, max: 1000}"},
-                               {"observe", "[report, mission], restart: {policy: on-failure, max: 1000}"}});
+                               {"plan", "[r1/planner, r1/follower]" + restart},
+                               {"control", "[r1/control]" + restart},
+                               {"safety", "[r1/guard]" + restart},
+                               {"observe", "[report, mission]" + restart}});
   const auto replace = [&](const std::string& from, const std::string& to) {
     const auto at = text.find(from);
     if (at == std::string::npos) throw std::runtime_error("lab.yaml no longer has '" + from + "'");
@@ -136,8 +141,8 @@ void judge_braking(const Recording& recording, Figures& figures) {
 }
 
 /// One drive through the laboratory; `round` counts on over all of them.
-void drive(int& round, int rounds, bool short_way, Figures& figures) {
-  Supervised run(composition(short_way), "sim, step: 10ms, pace: real-time");
+void drive(int& round, int rounds, bool short_way, const std::string& backoff, Figures& figures) {
+  Supervised run(composition(short_way, backoff), "sim, step: 10ms, pace: real-time");
   const int until = short_way ? rounds : std::min(rounds, round + 16);
   while (round < until) {
     run.wait_for(" recorder] driving");
@@ -167,20 +172,25 @@ void print(const char* what, std::vector<double> seconds) {
             << " ms, longest " << percentile(1.0) << " ms\n";
 }
 
-TEST(Kill, OfAnyContainerButTheSimulatorsBrakesTheRobotAndTheMissionSucceedsAllTheSame) {
+class Kill : public testing::TestWithParam<const char*> {};
+
+TEST_P(Kill, OfAnyContainerButTheSimulatorsBrakesTheRobotAndTheMissionSucceedsAllTheSame) {
   const int rounds = number_from("KERVAN_KILL_ROUNDS", 2);
   const int load = number_from("KERVAN_KILL_LOAD", 0);
   const Load busy(load);
   Figures figures;
-  for (int round = 0; round < rounds;) drive(round, rounds, rounds < 8, figures);
+  for (int round = 0; round < rounds;) drive(round, rounds, rounds < 8, GetParam(), figures);
   std::cout << rounds << " rounds in " << figures.missions << " missions, " << load << " busy threads beside\n";
   print("from the last fresh command to full braking", figures.braking);
   print("from the signal until active again", figures.back);
   std::cout << "commands that stopped while the robot stood: " << figures.standing << "\n";
 }
 
-TEST(Kill, OfTheSimulatorEndsTheRunWithItsName) {
-  Supervised run(composition(true), "sim, step: 10ms, pace: real-time");
+INSTANTIATE_TEST_SUITE_P(RestartedAfter, Kill, testing::Values(kSoon, kLate),
+                         [](const auto& test) { return std::string(test.param); });
+
+TEST(KillOfTheSimulator, EndsTheRunWithItsName) {
+  Supervised run(composition(true, kSoon), "sim, step: 10ms, pace: real-time");
   run.wait_for(" recorder] driving");
   const auto start = Clock::now();
   ::kill(run.container("sim"), SIGKILL);
