@@ -21,9 +21,9 @@ using Steady = std::chrono::steady_clock;
 constexpr const char* kFenceTopic = "/kervan/fence";
 
 /// A member that was not heard of for so long is lost: with the time it takes to tell everybody, less than 2 s.
-constexpr Duration kLease = 1500ms;
+constexpr Duration kLease = 1200ms;
 /// How often a waiting or working container says that it is alive.
-constexpr Duration kAssertPeriod = 250ms;
+constexpr Duration kAssertPeriod = 200ms;
 /// A handler may take so long before its container counts as stuck.
 constexpr Duration kLongestHandler = 60s;
 /// Cyclone watches the lease and otherwise carries: "keep all" of a fence is two samples.

@@ -6,6 +6,7 @@
 
 #include "framework/dds/hash.hpp"
 #include "framework/runtime/fences.hpp"
+#include "framework/runtime/members.hpp"
 #include "kervan_msgs/msg/Fence.hpp"
 
 namespace kervan::runtime {
@@ -65,15 +66,13 @@ std::string Fences::not_found() const {
   return text;
 }
 
-/// Everything that must be the same in all containers; parameters may name files, which differ from host to host.
+/// Everything that must be the same in all containers of a run.
 std::uint64_t Fences::hash_of_run() const {
   Hash64 hash;
+  hash.number(composition_hash(container_.spec()));
   for (const Member& member : members_) hash.text(member.name);
   for (const ComponentSpec& component : container_.spec().components)
-    for (const std::string* text : {&component.name, &component.type}) hash.text(*text);
-  for (const auto* endpoints : {&matching_.writers(), &matching_.readers()})
-    for (const CompositionEndpoint& endpoint : *endpoints)
-      for (const std::string* text : {&endpoint.name, &endpoint.topic, &endpoint.container}) hash.text(*text);
+    if (!component.container.empty()) hash.text(component.container);  // else it is this container's own addition
   return hash.value();
 }
 

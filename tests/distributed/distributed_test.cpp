@@ -11,6 +11,7 @@
 #include "framework/component/error.hpp"
 #include "tests/conformance/wire/peer.hpp"
 #include "tests/distributed/stations.hpp"
+#include "tests/program/program.hpp"
 
 namespace kervan::test {
 namespace {
@@ -140,15 +141,20 @@ TEST(Distributed, ARunWithoutTimersEndsIdleEverywhere) {
     EXPECT_EQ(result.report.end, RunEnd::idle) << result.report.reason;
 }
 
-TEST(Distributed, AHandlerThatTakesLongIsNoFailure) {
+TEST(Distributed, AHandlerThatTakesLongIsNoFailureButIsNamedByThoseWhoWait) {
+  const Folder folder;
   std::vector<ContainerSpec> specs = all_of(1, {2});
-  for (ContainerSpec& spec : specs)
+  for (ContainerSpec& spec : specs) {
+    spec.run_folder = folder.path();
     spec.components.push_back({.name = "sleeper",
                                .type = "test/sleeper",
                                .container = "c1",
                                .ports = {{"out", "/sleeper", *builtin_profile("state"), PortDirection::output}}});
+  }
   for (const MemberResult& result : run_in_threads(specs, {.limit = 50ms}))
     EXPECT_EQ(result.report.end, RunEnd::time_limit) << result.report.reason;
+  EXPECT_THAT(text_of(folder.path() / "log-c0.txt"),
+              HasSubstr("t = 0.000000 s, cycle 0: waiting for the fence of container c1"));
 }
 
 TEST(Distributed, AMemberThatNeverComesIsNamed) {
@@ -195,9 +201,10 @@ TEST(Distributed, ARunWithoutATagOfItsOwnIsRefused) {
 TEST(Distributed, AnInputOfTheFrameworksOwnTopicsIsRefused) {
   ContainerSpec spec = stations(1, {2}, 0, new_tag());
   spec.components[0].ports[0].topic = "/kervan/anything";
-  EXPECT_EQ(refusal_of(spec),
-            "station0.in hears /kervan/anything, which every container publishes in its own time; under lockstep only a "
-            "composition in one container can do that");
+  EXPECT_EQ(
+      refusal_of(spec),
+      "station0.in hears /kervan/anything, which every container publishes in its own time; under lockstep only a "
+      "composition in one container can do that");
 }
 
 // In processes. A member says "began" when time has moved, and at the end why, and the trace.

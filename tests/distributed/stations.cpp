@@ -148,7 +148,7 @@ class Sleeper final : public Component {
   Output<Range> out_{this, "out", qos::state, "Something."};
   Timer tick_{this, 1s, &Sleeper::on_tick};
   void on_tick(Time now) {
-    if (now == Time{}) std::this_thread::sleep_for(2500ms);
+    if (now == Time{}) std::this_thread::sleep_for(5500ms);
     out_.publish(Range{});
   }
 };
