@@ -23,6 +23,12 @@ std::size_t count(const ResolvedComposition& composition, Severity severity) {
                                                 [&](const Finding& finding) { return finding.severity == severity; }));
 }
 
+/// A topic that nobody writes or reads has a line in the matrix, but no pair.
+std::size_t pairs(const ResolvedComposition& composition) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      composition.pairs, [](const auto& pair) { return !pair.writer.empty() && !pair.reader.empty(); }));
+}
+
 std::string counted(std::size_t number, const std::string& noun) {
   return std::to_string(number) + " " + noun + (number == 1 ? "" : "s");
 }
@@ -53,22 +59,28 @@ ordered_json report(const ResolvedComposition& composition) {
   object["result"] = !composition.usable() ? "errors" : composition.findings.empty() ? "good" : "warnings";
   object["composition"] = composition.source.name;
   object["file"] = composition.source.file;
-  for (const char* list : {"arguments", "components", "topics", "pairs", "findings"})
+  for (const char* list : {"arguments", "containers", "components", "topics", "pairs", "findings"})
     object[list] = ordered_json::array();
   for (const auto& argument : composition.source.arguments)
     object["arguments"].push_back({{"name", argument.info.name},
                                    {"kind", to_text(argument.info.kind)},
                                    {"value", argument.value->shown()},
                                    {"help", argument.info.help}});
+  for (const auto& container : composition.source.containers)
+    object["containers"].push_back(
+        {{"name", container.name},
+         {"host", container.host.empty() ? ordered_json(nullptr) : ordered_json(container.host)},
+         {"components", container.components}});
   for (const auto& component : composition.components)
     object["components"].push_back(
         {{"name", component.name}, {"type", component.manifest.type}, {"container", component.container}});
   for (const auto& [name, topic] : composition.topics) object["topics"].push_back(topic_json(composition, topic));
+  const auto port = [](const std::string& name) { return name.empty() ? ordered_json(nullptr) : ordered_json(name); };
   for (const auto& pair : composition.pairs)
     object["pairs"].push_back({{"topic", pair.topic},
                                {"type", pair.type},
-                               {"writer", pair.writer},
-                               {"reader", pair.reader},
+                               {"writer", port(pair.writer)},
+                               {"reader", port(pair.reader)},
                                {"profile", pair.profile},
                                {"verdict", pair.verdict}});
   for (const auto& finding : composition.findings)
@@ -112,11 +124,22 @@ void print_arguments(const ResolvedComposition& composition) {
   std::cout << '\n';
 }
 
+void print_placement(const ResolvedComposition& composition) {
+  if (composition.source.containers.size() < 2) return;
+  std::vector<std::vector<std::string>> rows = {{"container", "host", "components"}};
+  for (const auto& container : composition.source.containers)
+    rows.push_back(
+        {container.name, container.host.empty() ? "-" : container.host, config::joined(container.components)});
+  print_table(std::cout, rows);
+  std::cout << '\n';
+}
+
 void print_matrix(const ResolvedComposition& composition) {
   if (composition.pairs.empty()) return;
   std::vector<std::vector<std::string>> rows = {{"topic", "type", "writer", "reader", "profile", "verdict"}};
+  const auto port = [](const std::string& name) { return name.empty() ? std::string("-") : name; };
   for (const auto& pair : composition.pairs)
-    rows.push_back({pair.topic, pair.type, pair.writer, pair.reader, pair.profile, pair.verdict});
+    rows.push_back({pair.topic, pair.type, port(pair.writer), port(pair.reader), pair.profile, pair.verdict});
   print_table(std::cout, rows);
 }
 
@@ -133,10 +156,11 @@ int check(const CheckRequest& request) {
     print_topic(composition, *topic);
   } else {
     print_arguments(composition);
+    print_placement(composition);
     print_matrix(composition);
     std::cout << composition.source.name << ": " << counted(composition.components.size(), "component") << ", "
-              << counted(composition.topics.size(), "topic") << ", " << counted(composition.pairs.size(), "pair")
-              << ", " << counted(count(composition, Severity::error), "error") << ", "
+              << counted(composition.topics.size(), "topic") << ", " << counted(pairs(composition), "pair") << ", "
+              << counted(count(composition, Severity::error), "error") << ", "
               << counted(count(composition, Severity::warning), "warning") << '\n';
   }
   if (!composition.usable()) return exit_unusable;

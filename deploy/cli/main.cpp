@@ -26,12 +26,16 @@ void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
       ->check(not_empty)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb.add_option("--place", "where the components go; 'all' puts them into one container")
-      ->type_name("all")
-      ->check(CLI::Validator(
-          [](const std::string& text) { return text == "all" ? "" : "'" + text + "' is no placement; allowed: all"; },
-          ""))
-      ->each([&request](const std::string&) { request.place_all = true; });
+  verb.add_option(
+          "--place", request.place,
+          "where components go: 'all' in one container, 'each' in its own, or these in that one; may be repeated")
+      ->type_name("all|each|CONTAINER=COMPONENT,...")
+      ->check(not_empty)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--host", request.host, "which of the composition's hosts this is")
+      ->type_name("NAME")
+      ->check(not_empty);
   verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
 }
 

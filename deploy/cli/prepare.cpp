@@ -14,7 +14,8 @@ composition::ResolvedComposition prepare(const CompositionRequest& request, Comp
   const auto file = composition::find_composition(request.composition, resources.compositions);
   InstalledComponents components(registry);
   const composition::ResolveOptions options{resources.files, {runtime::kStatusTopic, "/rosout"}};
-  return composition::resolve(composition::load(file, {request.arguments, request.place_all}), components, options);
+  return composition::resolve(composition::load(file, {request.arguments, request.place, request.host}), components,
+                              options);
 }
 
 namespace {

@@ -15,6 +15,7 @@
 #include "deploy/cli/run_composition.hpp"
 #include "deploy/cli/table.hpp"
 #include "deploy/cli/verbs.hpp"
+#include "deploy/composition/hosts.hpp"
 
 namespace kervan::cli {
 namespace {
@@ -189,6 +190,7 @@ int run(const RunRequest& request) {
   ComponentRegistry registry(component_folders());
   const ResolvedComposition composition = prepare(request, registry);
   require_usable(composition);
+  composition::containers_here(composition.source);  // refuses before anything is written
 
   const bool here = runs_here(composition);
   if (here) {  // elsewhere the supervisor takes them

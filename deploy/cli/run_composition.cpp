@@ -2,8 +2,10 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 
+#include "deploy/composition/hosts.hpp"
 #include "deploy/container/mission_listener.hpp"
 #include "deploy/container/specification.hpp"
 #include "framework/runtime/container.hpp"
@@ -58,8 +60,12 @@ supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition&
   config.program = container_program();
   config.spec_folder = fs::absolute(options.run_folder);
   config.limit = options.time_limit;
-  for (std::size_t i = 0; i < specs.size(); ++i)
-    config.containers.push_back({std::move(specs[i]), composition.source.containers[i].restart});
+  const auto here = composition::containers_here(composition.source);
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    const composition::Container& container = composition.source.containers[i];
+    if (std::ranges::find(here, &container) != here.end())
+      config.containers.push_back({std::move(specs[i]), container.restart});
+  }
   supervisor::Supervisor supervisor(std::move(config), {events.say, events.waiting, events.progress});
   return supervisor.run();
 }

@@ -19,7 +19,8 @@ enum ExitCode : int {
 struct CompositionRequest {
   std::string composition;             ///< a name or a file
   std::vector<std::string> arguments;  ///< "name=value"
-  bool place_all = false;
+  std::vector<std::string> place;      ///< "all", "each" or "container=component,component"
+  std::string host;                    ///< which of the composition's hosts this is; empty: not said
   bool json = false;
 };
 

@@ -27,11 +27,13 @@ struct Host {
   std::string name;
   std::string interface;  ///< of the network, empty if any
   std::string address;    ///< where the others find it, empty if on the same machine
+  Location location = {};
 };
 
 struct Domain {
   int id = 0;
   std::string tag;  ///< only those with the same tag see each other; empty: all without one
+  bool multicast = true;  ///< whether the network carries it
   std::vector<Host> hosts;
 };
 
@@ -42,6 +44,7 @@ struct ComponentEntry {
   config::Node type;      ///< "control/potential_field"
   config::Node params;    ///< a map
   config::Node remap;     ///< a map: port -> topic or component/port
+  config::Node strength;  ///< a map: output -> strength under exclusive ownership
   std::string log_level;  ///< trace, debug, info, warn, error or off
   Location location;      ///< where its name stands
 };
@@ -74,7 +77,7 @@ struct Restart {
 
 struct Container {
   std::string name;
-  std::string host;                     ///< empty: this one
+  std::string host;                     ///< empty: whichever runs it
   std::vector<std::string> components;  ///< full names, in the composition's order
   int threads = 1;
   Restart restart;
@@ -96,6 +99,7 @@ struct Composition {
   std::vector<Argument> arguments;
   Clock clock;
   Domain domain;
+  std::string host;  ///< the one that `--host` says this is; empty: not said
   std::vector<ProfileEntry> profiles;
   std::vector<TopicEntry> topics;
   std::vector<ComponentEntry> components;  ///< in the file's order, a template's where its instance stands

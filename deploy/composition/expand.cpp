@@ -48,7 +48,7 @@ std::vector<std::string> split(const std::string& path) {
 }
 
 ComponentEntry component_of(const Node& node, const std::string& scope, const std::string& log_level) {
-  node.only_keys({"type", "params", "remap", "log"});
+  node.only_keys({"type", "params", "remap", "strength", "log"});
   ComponentEntry entry;
   entry.name = scope.empty() ? node.name : scope + "/" + node.name;
   entry.scope = scope;
@@ -56,6 +56,7 @@ ComponentEntry component_of(const Node& node, const std::string& scope, const st
   entry.type.as_text();
   entry.params = map_or_empty(node, "params");
   entry.remap = map_or_empty(node, "remap");
+  entry.strength = map_or_empty(node, "strength");
   const Node* log = node.optional("log");
   entry.log_level = log ? log_level_of(*log) : log_level;
   entry.location = node.key_location;
@@ -69,7 +70,7 @@ void set_value(Node& components, const Node& setting, const std::string& templat
   if (node == nullptr)
     setting.fail_at_key("the template '" + template_name + "' has no component '" + path[0] + "'" +
                         config::did_you_mean(path[0], keys_of(components)));
-  const std::vector<std::string> allowed = {"type", "params", "remap", "log"};
+  const std::vector<std::string> allowed = {"type", "params", "remap", "strength", "log"};
   if (path.size() < 2 || std::find(allowed.begin(), allowed.end(), path[1]) == allowed.end())
     setting.fail_at_key("'" + setting.name + "' names nothing that can be set; write e.g. " + path[0] +
                         ".params.NAME, " + path[0] + ".remap.PORT or " + path[0] + ".log");

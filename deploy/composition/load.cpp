@@ -6,7 +6,8 @@
 
 #include "deploy/composition/arguments.hpp"
 #include "deploy/composition/expand.hpp"
-#include "deploy/composition/glob.hpp"
+#include "deploy/composition/hosts.hpp"
+#include "deploy/composition/placement.hpp"
 #include "deploy/composition/qos_rules.hpp"
 
 namespace kervan::composition {
@@ -44,161 +45,6 @@ Clock read_clock(const Node& node) {
   return clock;
 }
 
-Domain read_domain(const Node& node) {
-  node.only_keys({"id", "tag", "hosts"});
-  Domain domain;
-  if (const Node* id = node.optional("id")) {
-    const std::int64_t value = id->as_integer();
-    // Above 232 the UDP ports that DDS derives from the id no longer exist.
-    if (value < 0 || value > 232) id->fail(id->shown() + " is out of range; allowed: 0 .. 232");
-    domain.id = static_cast<int>(value);
-  }
-  if (const Node* tag = node.optional("tag")) domain.tag = tag->as_text();
-  if (const Node* hosts = node.optional("hosts")) {
-    for (const Node& host : hosts->map()) {
-      require_name(host, "host");
-      host.only_keys({"interface", "address"});
-      const Node* interface = host.optional("interface");
-      const Node* address = host.optional("address");
-      domain.hosts.push_back({host.name, interface ? interface->as_text() : "", address ? address->as_text() : ""});
-    }
-  }
-  return domain;
-}
-
-Restart read_restart(const Node& node) {
-  node.only_keys({"policy", "max", "window", "backoff", "quarantine"});
-  Restart restart;
-  const std::string policy = node.required("policy").as_choice({"never", "on-failure", "always", "quarantine"});
-  restart.policy = policy == "never"    ? RestartPolicy::never
-                   : policy == "always" ? RestartPolicy::always
-                                        : RestartPolicy::on_failure;
-  if (const Node* max = node.optional("max")) {
-    const std::int64_t value = max->as_integer();
-    if (value < 1 || value > 1000) max->fail(max->shown() + " is out of range; allowed: 1 .. 1000");
-    restart.max = static_cast<int>(value);
-  }
-  if (const Node* window = node.optional("window")) {
-    restart.window = window->as_duration();
-    if (restart.window <= Duration::zero()) window->fail(window->shown() + " is out of range; allowed: more than 0 s");
-  }
-  if (const Node* backoff = node.optional("backoff")) {
-    restart.backoff = backoff->as_duration();
-    if (restart.backoff <= Duration::zero() || restart.backoff > restart.longest_backoff)
-      backoff->fail(backoff->shown() + " is out of range; allowed: more than 0 s, at most " +
-                    duration_text(restart.longest_backoff));
-  }
-  if (policy == "quarantine") restart.quarantine = std::min(3, restart.max);
-  if (const Node* quarantine = node.optional("quarantine")) {
-    if (policy == "never")
-      quarantine->fail_at_key("'quarantine' has no meaning for a container that is never started again");
-    const std::int64_t value = quarantine->as_integer();
-    // With more crashes than restarts the container would have been given up before.
-    if (value < 1 || value > restart.max)
-      quarantine->fail(quarantine->shown() + " is out of range; allowed: 1 .. " + std::to_string(restart.max) +
-                       ", the largest number of restarts");
-    restart.quarantine = static_cast<int>(value);
-  }
-  return restart;
-}
-
-/// Places components into containers and remembers which line placed each, to name both when one is placed twice.
-class Placement {
- public:
-  explicit Placement(const std::vector<ComponentEntry>& components)
-      : components_(components), placed_(components.size()) {}
-
-  void place(const Node& pattern, const std::string& container) {
-    bool found = false;
-    for (std::size_t i = 0; i < components_.size(); ++i) {
-      if (!covers(pattern.as_text(), components_[i].name)) continue;
-      found = true;
-      if (placed_[i].container == container) continue;
-      if (!placed_[i].container.empty())
-        throw ConfigError(pattern.location, "the component '" + components_[i].name +
-                                                "' is already in the container '" + placed_[i].container + "' (" +
-                                                to_text(placed_[i].location) + "); it can be in one only");
-      placed_[i] = {container, pattern.location};
-    }
-    if (!found)
-      throw ConfigError(pattern.location,
-                        "there is no component '" + pattern.text + "'" + config::did_you_mean(pattern.text, names()));
-  }
-
-  /// Components that no line placed: the mission, which is not written under `components:`, goes where the first
-  /// container is; for any other it is an error.
-  void finish(std::vector<Container>& containers, const std::string& implied) {
-    for (std::size_t i = 0; i < components_.size(); ++i) {
-      if (!placed_[i].container.empty()) continue;
-      if (components_[i].name != implied)
-        throw ConfigError(components_[i].location, "the component '" + components_[i].name +
-                                                       "' is in no container; add it to one under 'containers'");
-      placed_[i].container = containers.front().name;
-    }
-    for (Container& container : containers)
-      for (std::size_t i = 0; i < components_.size(); ++i)
-        if (placed_[i].container == container.name) container.components.push_back(components_[i].name);
-  }
-
- private:
-  struct Placed {
-    std::string container;
-    Location location;
-  };
-
-  std::vector<std::string> names() const {
-    std::set<std::string> names;
-    for (const ComponentEntry& component : components_) {
-      names.insert(component.name);
-      if (!component.scope.empty()) names.insert(component.scope);
-    }
-    return {names.begin(), names.end()};
-  }
-
-  const std::vector<ComponentEntry>& components_;
-  std::vector<Placed> placed_;
-};
-
-std::vector<Container> read_containers(const Node& node, const Composition& composition, const std::string& implied) {
-  std::vector<Container> containers;
-  Placement placement(composition.components);
-  std::vector<std::string> hosts;
-  for (const Host& host : composition.domain.hosts) hosts.push_back(host.name);
-  if (node.map().empty()) node.fail("there must be at least one container; leave 'containers' out to have one for all");
-  for (const Node& given : node.map()) {
-    require_name(given, "container");
-    given.only_keys({"host", "components", "threads", "restart"});
-    Container container;
-    container.name = given.name;
-    container.location = given.key_location;
-    if (const Node* host = given.optional("host")) {
-      container.host = host->as_text();
-      if (std::find(hosts.begin(), hosts.end(), container.host) == hosts.end())
-        host->fail("there is no host '" + container.host + "'" +
-                   config::hint(container.host, hosts, "under domain.hosts"));
-    }
-    if (const Node* threads = given.optional("threads")) {
-      const std::int64_t value = threads->as_integer();
-      if (value < 1 || value > 64) threads->fail(threads->shown() + " is out of range; allowed: 1 .. 64");
-      container.threads = static_cast<int>(value);
-    }
-    if (const Node* restart = given.optional("restart")) container.restart = read_restart(*restart);
-    for (const Node& pattern : given.required("components").list()) placement.place(pattern, given.name);
-    containers.push_back(std::move(container));
-  }
-  placement.finish(containers, implied);
-  return containers;
-}
-
-/// One container for everything. Of the containers it replaces only the number of threads is kept, the largest.
-Container one_container(const Composition& composition) {
-  Container all;
-  all.name = "all";
-  for (const Container& container : composition.containers) all.threads = std::max(all.threads, container.threads);
-  for (const ComponentEntry& component : composition.components) all.components.push_back(component.name);
-  return all;
-}
-
 ComponentEntry mission_component(const Node& mission, const std::string& log_level) {
   mission.map();
   ComponentEntry entry;
@@ -206,7 +52,7 @@ ComponentEntry mission_component(const Node& mission, const std::string& log_lev
   entry.type = config::scalar("observe/mission", "mission", mission.location.file);
   entry.type.location = entry.type.key_location = mission.key_location;
   entry.params = mission;
-  entry.remap.kind = config::Kind::map;
+  entry.remap.kind = entry.strength.kind = config::Kind::map;
   entry.log_level = log_level;
   entry.location = mission.key_location;
   return entry;
@@ -277,9 +123,10 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
       mission->fail_at_key("'mission' is a component already (" + to_text(same->location) + "); keep one of the two");
     composition.components.push_back(mission_component(*mission, log_level));
   }
-  if (const auto containers = filled("containers"))
-    composition.containers = read_containers(*containers, composition, mission ? "mission" : "");
-  if (composition.containers.empty() || options.place_all) composition.containers = {one_container(composition)};
+  const auto containers = filled("containers");
+  composition.containers =
+      place_components(composition, containers ? &*containers : nullptr, mission ? "mission" : "", options.place);
+  choose_host(composition, options.host);
   return composition;
 }
 

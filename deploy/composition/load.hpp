@@ -10,8 +10,9 @@
 namespace kervan::composition {
 
 struct LoadOptions {
-  std::vector<std::string> arguments;  ///< "controller=vff", as on the command line
-  bool place_all = false;              ///< one container for everything, whatever the file says
+  std::vector<std::string> arguments = {};  ///< "controller=vff", as on the command line
+  std::vector<std::string> place = {};      ///< "all", "each" or "brain=r1/*,r2", as on the command line
+  std::string host = {};                    ///< the host that this is; empty: not said
 };
 
 /// Throws ConfigError at the place of the first thing that cannot be used.

@@ -16,17 +16,21 @@ struct QosValue {
   std::string name;
   std::string value;
   std::string origin;
+  Location location = {};  ///< unknown for a value that no line of the file gave
 };
 
 struct EffectiveQos {
   QosProfile profile;
   std::vector<QosValue> values;  ///< in a fixed order, one for each value of the profile
+
+  const QosValue& value(std::string_view name) const;  ///< of the profile, which has it
 };
 
 /// The built-in profiles and a composition's own, with `extends` followed.
 class Profiles {
  public:
-  /// Throws ConfigError for unknown keys, wrong values, unknown bases, circles, and names that are built in.
+  /// Throws ConfigError for unknown keys, wrong values, values that exclude each other, unknown bases, circles, and
+  /// names that are built in.
   explicit Profiles(const std::vector<ProfileEntry>& entries);
 
   /// nullptr if there is none.
@@ -49,11 +53,15 @@ struct TopicFacts {
   bool untraced = false;         ///< a port keeps its samples out of the trace
 };
 
+/// "1 s, from lab.yaml:5:20 (topic /raw)"
+std::string value_and_origin(const QosValue& value);
+
 /// The entry of `topics:` that holds for this topic: the most specific pattern. Two that are equally specific are an
 /// error. nullptr if none matches.
 const TopicEntry* entry_for(const std::string& topic, const std::vector<TopicEntry>& entries);
 
-/// Profile named by the entry, else declared by the port, with the entry's own values on top.
+/// Profile named by the entry, else declared by the port, with the entry's own values on top. Throws ConfigError if
+/// they exclude each other.
 EffectiveQos effective_qos(const TopicFacts& topic, const TopicEntry* entry, const Profiles& profiles);
 
 /// Refuses unknown keys and wrong values of one entry of `topics:`.

@@ -48,6 +48,24 @@ Location location_of(const PortInfo& port, const ComponentEntry& entry, const st
   return entry.location;
 }
 
+void give_strengths(ResolvedComponent& component, const ComponentEntry& entry) {
+  std::vector<std::string> outputs;
+  for (const ResolvedPort& port : component.ports)
+    if (port.info.direction == PortDirection::output) outputs.push_back(port.info.name);
+  for (const Node& given : entry.strength.map()) {
+    const auto port = std::find_if(component.ports.begin(), component.ports.end(), [&](const ResolvedPort& p) {
+      return p.info.direction == PortDirection::output && p.info.name == given.name;
+    });
+    if (port == component.ports.end())
+      given.fail_at_key(component.manifest.type + " has no output '" + given.name + "'" +
+                        config::hint(given.name, outputs, "it has"));
+    const std::int64_t strength = given.as_integer();
+    if (strength < 0 || strength > 1'000'000) given.fail(given.shown() + " is out of range; allowed: 0 .. 1000000");
+    port->strength = static_cast<int>(strength);
+    port->strength_location = given.location;
+  }
+}
+
 ResolvedComponent resolve_component(const ComponentEntry& entry, ComponentCatalogue& catalogue,
                                     const config::FindFile& find) {
   const std::string type = entry.type.as_text();
@@ -71,6 +89,7 @@ ResolvedComponent resolve_component(const ComponentEntry& entry, ComponentCatalo
   }
   for (const PortInfo& port : component.manifest.ports)
     component.ports.push_back({port, "", location_of(port, entry, component.manifest.parameters)});
+  give_strengths(component, entry);
   return component;
 }
 

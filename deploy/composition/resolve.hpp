@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -37,6 +38,8 @@ struct ResolvedPort {
   PortInfo info;
   std::string topic;  ///< absolute: "/r1/sonar"
   Location location;  ///< of the remap, else of the name in a parameter that it belongs to, else of the component
+  std::optional<int> strength = {};  ///< of an output, if the composition gives it one
+  Location strength_location = {};
 };
 
 struct ResolvedComponent {
@@ -52,6 +55,8 @@ struct ResolvedComponent {
 struct PortReference {
   std::size_t component = 0;  ///< index into ResolvedComposition::components
   std::size_t port = 0;       ///< index into its ports
+
+  bool operator==(const PortReference&) const = default;
 };
 
 struct ResolvedTopic {
@@ -71,7 +76,7 @@ struct Finding {
   std::string message;
 };
 
-/// One writer and one reader of a topic. The verdict is "ok" or what is wrong.
+/// One writer and one reader of a topic; empty if it has none. The verdict is "ok" or what is wrong.
 struct Pair {
   std::string topic, type, writer, reader, profile, verdict;
 };

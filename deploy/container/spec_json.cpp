@@ -76,6 +76,11 @@ std::string_view to_text(ClockMode mode) {
   return mode == ClockMode::wall ? "wall" : mode == ClockMode::sim ? "sim" : "lockstep";
 }
 
+std::string_view to_text(dds::DomainConfig::Multicast multicast) {
+  using Multicast = dds::DomainConfig::Multicast;
+  return multicast == Multicast::yes ? "yes" : multicast == Multicast::no ? "no" : "discovery_only";
+}
+
 /// The enumerator that to_text() calls by this name.
 template <class Enum>
 Enum choice(const JsonReader& reader, std::initializer_list<Enum> all) {
@@ -127,18 +132,19 @@ QosProfile profile_of(const JsonReader& reader) {
 }
 
 ordered_json port_json(const PortBinding& binding) {
-  const auto& [port, topic, profile, direction, type, layout_hash, optional] = binding;
+  const auto& [port, topic, profile, direction, type, layout_hash, optional, strength] = binding;
   return {{"port", port},
           {"topic", topic},
           {"direction", to_text(direction)},
           {"type", type},
           {"layout_hash", hash_text(layout_hash)},
           {"optional", optional},
+          {"strength", strength ? ordered_json(*strength) : nullptr},
           {"profile", profile_json(profile)}};
 }
 
 PortBinding port_of(const JsonReader& reader) {
-  reader.only_keys({"port", "topic", "direction", "type", "layout_hash", "optional", "profile"});
+  reader.only_keys({"port", "topic", "direction", "type", "layout_hash", "optional", "strength", "profile"});
   PortBinding binding;
   binding.port = reader.at("port").text();
   binding.topic = reader.at("topic").text();
@@ -146,6 +152,8 @@ PortBinding port_of(const JsonReader& reader) {
   binding.type = reader.at("type").text();
   binding.layout_hash = reader.at("layout_hash").hash();
   binding.optional = reader.at("optional").boolean();
+  if (const JsonReader strength = reader.at("strength"); !strength.raw().is_null())
+    binding.strength = strength.integer<int>();
   binding.profile = profile_of(reader.at("profile"));
   return binding;
 }
@@ -177,24 +185,32 @@ ComponentSpec component_of(const JsonReader& reader) {
 }
 
 ordered_json domain_json(const dds::DomainConfig& domain) {
-  const auto& [id, network, interface, tag, peers, external_id, user_data] = domain;
+  const auto& [id, network, interface, address, tag, peers, multicast, processes, external_id, user_data] = domain;
   return {{"id", id},
           {"network", network},
           {"interface", interface},
+          {"address", address},
           {"tag", tag},
           {"peers", peers},
+          {"multicast", to_text(multicast)},
+          {"processes", processes},
           {"external_id", external_id ? ordered_json(*external_id) : nullptr},
           {"user_data", user_data}};
 }
 
 dds::DomainConfig domain_of(const JsonReader& reader) {
-  reader.only_keys({"id", "network", "interface", "tag", "peers", "external_id", "user_data"});
+  reader.only_keys(
+      {"id", "network", "interface", "address", "tag", "peers", "multicast", "processes", "external_id", "user_data"});
   dds::DomainConfig domain;
   domain.id = reader.at("id").integer<std::uint32_t>();
   domain.network = reader.at("network").boolean();
   domain.interface = reader.at("interface").text();
+  domain.address = reader.at("address").text();
   domain.tag = reader.at("tag").text();
   reader.at("peers").each([&](const JsonReader& peer) { domain.peers.push_back(peer.text()); });
+  using Multicast = dds::DomainConfig::Multicast;
+  domain.multicast = choice(reader.at("multicast"), {Multicast::yes, Multicast::discovery_only, Multicast::no});
+  domain.processes = reader.at("processes").integer<int>();
   if (const JsonReader external = reader.at("external_id"); !external.raw().is_null())
     domain.external_id = external.integer<std::uint32_t>();
   domain.user_data = reader.at("user_data").text();

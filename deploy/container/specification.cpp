@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "deploy/composition/hosts.hpp"
 #include "deploy/container/mission_listener.hpp"
 #include "framework/runtime/clock_reader.hpp"
 
@@ -35,7 +36,8 @@ std::vector<runtime::ComponentSpec> components_of(const composition::ResolvedCom
                               .direction = port.info.direction,
                               .type = port.info.type,
                               .layout_hash = port.info.layout_hash,
-                              .optional = port.info.qos.is_optional()});
+                              .optional = port.info.qos.is_optional(),
+                              .strength = port.strength});
   }
   // Last, and beside the component it listens to: the run is the same with and without it, wherever that one runs.
   for (const auto& [name, topic] : composition.topics) {
@@ -53,9 +55,15 @@ std::vector<runtime::ComponentSpec> components_of(const composition::ResolvedCom
   return components;
 }
 
-const composition::Host* host_of(const composition::Domain& domain, const std::string& name) {
-  const auto found = std::ranges::find(domain.hosts, name, &composition::Host::name);
-  return found == domain.hosts.end() ? nullptr : &*found;
+dds::DomainConfig::Multicast multicast_of(composition::HostNetwork::Multicast multicast) {
+  using From = composition::HostNetwork::Multicast;
+  using To = dds::DomainConfig::Multicast;
+  switch (multicast) {
+    case From::yes: return To::yes;
+    case From::discovery_only: return To::discovery_only;
+    case From::no: return To::no;
+  }
+  return To::yes;
 }
 
 }  // namespace
@@ -82,11 +90,12 @@ std::vector<runtime::ContainerSpec> specifications(const composition::ResolvedCo
     runtime::ContainerSpec& spec = specs.emplace_back(common);
     spec.name = container.name;
     spec.threads = options.threads != 0 ? options.threads : static_cast<unsigned>(container.threads);
-    const composition::Host* host = host_of(source.domain, container.host);
-    if (!host && !source.domain.hosts.empty()) host = &source.domain.hosts.front();
-    if (host && !host->interface.empty()) spec.domain.interface = host->interface;
-    for (const composition::Host& other : source.domain.hosts)
-      if (&other != host && !other.address.empty()) spec.domain.peers.push_back(other.address);
+    const composition::HostNetwork network = composition::network_of(source, container);
+    spec.domain.interface = network.interface;
+    spec.domain.address = network.address;
+    spec.domain.peers = network.peers;
+    spec.domain.multicast = multicast_of(network.multicast);
+    spec.domain.processes = network.processes;
   }
   return specs;
 }

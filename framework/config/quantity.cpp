@@ -149,8 +149,12 @@ std::variant<double, std::string> parse_quantity(std::string_view text, std::str
   if (!std::holds_alternative<double>(value)) return value;
   if (unit.empty())
     return std::string(number) + " has no unit; write e.g. " + std::string(number) + " " + std::string(si);
-  for (const Unit& known : dimension.units)
-    if (known.name == unit) return std::get<double>(value) * known.factor;
+  for (const Unit& known : dimension.units) {
+    if (known.name != unit) continue;
+    const double in_si = std::get<double>(value) * known.factor;
+    if (!std::isfinite(in_si)) return std::string(text) + " is too large or too small for a number";
+    return in_si;
+  }
   return std::string(text) + " is not " + std::string(dimension.what) + "; allowed units: " + unit_list(dimension);
 }
 

@@ -189,10 +189,14 @@ Node parse(const std::string& text, const std::string& shown_as) {
 Node load(const std::string& path, const std::string& shown_as) {
   const std::string& name = shown_as.empty() ? path : shown_as;
   std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  if (file) text << file.rdbuf();
-  if (!file) throw ConfigError({name, 0, 0}, "cannot read the file: " + std::string(std::strerror(errno)));
-  return parse(text.str(), name);
+  std::string text;
+  char part[1 << 16];
+  while (file && (file.read(part, sizeof part) || file.gcount() > 0))
+    text.append(part, static_cast<std::size_t>(file.gcount()));
+  // A folder can be opened, but not read.
+  if (!file.is_open() || file.bad())
+    throw ConfigError({name, 0, 0}, "cannot read the file: " + std::string(std::strerror(errno)));
+  return parse(text, name);
 }
 
 }  // namespace kervan::config

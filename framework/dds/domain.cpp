@@ -57,17 +57,22 @@ std::string cyclone_configuration(const DomainConfig& config) {
   std::string xml = "<General>";
   if (!config.network) return xml + "<Transport>none</Transport></General>";
   // The loopback interface carries multicast but does not say so, and takes the largest datagrams in one piece, which
-  // saves a fifth of the time a large message takes. Index and lease: Cyclone's defaults let only nine processes share an
-  // interface without multicast, and take ten seconds to notice that a peer died.
+  // saves a fifth of the time a large message takes. Index and lease: Cyclone's defaults let only nine processes share
+  // an interface without multicast, and take ten seconds to notice that a peer died.
+  using Multicast = DomainConfig::Multicast;
   const bool loopback = config.interface == "lo";
-  xml += "<Interfaces><NetworkInterface name=\"" + escaped(config.interface) + "\"" +
-         (loopback ? " multicast=\"true\"" : "") + "/></Interfaces>" +
-         (loopback ? "<MaxMessageSize>65000B</MaxMessageSize>" : "") + "</General><Discovery>";
+  xml += "<Interfaces><NetworkInterface ";
+  xml += config.interface.empty() ? "address=\"" + escaped(config.address) : "name=\"" + escaped(config.interface);
+  xml += std::string("\"") + (loopback && config.multicast != Multicast::no ? " multicast=\"true\"" : "") +
+         "/></Interfaces>";
+  if (config.multicast != Multicast::yes)
+    xml +=
+        std::string("<AllowMulticast>") + (config.multicast == Multicast::no ? "false" : "spdp") + "</AllowMulticast>";
+  xml += std::string(loopback ? "<MaxMessageSize>65000B</MaxMessageSize>" : "") + "</General><Discovery>";
   if (config.external_id) xml += "<ExternalDomainId>" + std::to_string(*config.external_id) + "</ExternalDomainId>";
   if (!config.tag.empty()) xml += "<Tag>" + escaped(config.tag) + "</Tag>";
-  xml +=
-      "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>119</MaxAutoParticipantIndex>"
-      "<LeaseDuration>2s</LeaseDuration>";
+  xml += "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>" + std::to_string(config.processes - 1) +
+         "</MaxAutoParticipantIndex><LeaseDuration>2s</LeaseDuration>";
   if (!config.peers.empty()) {
     xml += "<Peers>";
     for (const std::string& peer : config.peers) xml += "<Peer address=\"" + escaped(peer) + "\"/>";
@@ -81,7 +86,9 @@ Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time) :
   const auto fail = [&](const char* what, int code) {
     if (domain_ > 0) dds_delete(domain_);
     throw DdsError(std::string("cannot ") + what + " (domain " + std::to_string(config.id) +
-                   (config.network ? ", interface " + config.interface : ", no network") +
+                   (!config.network            ? ", no network"
+                    : config.interface.empty() ? ", address " + config.address
+                                               : ", interface " + config.interface) +
                    "): " + dds_strretcode(-code) + "; " + log.text());
   };
   domain_ = dds_create_domain(config.id, cyclone_configuration(config).c_str());

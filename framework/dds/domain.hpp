@@ -24,9 +24,12 @@ class DdsError : public std::runtime_error {
 struct DomainConfig {
   std::uint32_t id = 0;
   bool network = true;                  ///< false: no sockets at all, the domain ends with this process
-  std::string interface = "lo";         ///< name of the network interface
+  std::string interface = "lo";         ///< name of the network interface; empty: the one with `address`
+  std::string address = {};             ///< of the interface, if it has no name here
   std::string tag = {};                 ///< domains with different tags do not see each other
-  std::vector<std::string> peers = {};  ///< addresses to look for when the network has no multicast
+  std::vector<std::string> peers = {};  ///< addresses to look for, beside what multicast finds
+  enum class Multicast { yes, discovery_only, no } multicast = Multicast::yes;
+  int processes = 120;  ///< that can take part on one host; 120 is the most that the ports of DDS have room for
   /// The domain's number on the network when it is not `id`: several domains of one process meet there like processes.
   std::optional<std::uint32_t> external_id = {};
   std::string user_data = {};  ///< what the participant says of itself to every peer; see participant_identity()

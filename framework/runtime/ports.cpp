@@ -222,8 +222,8 @@ OutputPort::OutputPort(OutputBase& output, const PortBinding& binding, Component
       index_(index),
       traced_(clock == ClockMode::lockstep && binding.profile.trace && output.info().qos.traced()),
       keeps_last_(clock != ClockMode::wall && binding.profile.liveliness == Liveliness::manual),
-      writer_(domain, binding.topic, output.type(), binding.profile, part_of(clock), output.info().qos.strength(),
-              index, this) {
+      writer_(domain, binding.topic, output.type(), binding.profile, part_of(clock),
+              binding.strength.value_or(output.info().qos.strength()), index, this) {
   output.port_ = this;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,9 +20,10 @@ struct PortBinding {
   std::string topic;  ///< absolute: "/r1/sonar"
   QosProfile profile;
   PortDirection direction = PortDirection::input;
-  std::string type = {};          ///< as in IDL: "sensor_msgs::msg::Range"
-  std::uint64_t layout_hash = 0;  ///< of the type; 0 if not known
-  bool optional = false;          ///< an input that may stay without a writer
+  std::string type = {};             ///< as in IDL: "sensor_msgs::msg::Range"
+  std::uint64_t layout_hash = 0;     ///< of the type; 0 if not known
+  bool optional = false;             ///< an input that may stay without a writer
+  std::optional<int> strength = {};  ///< of an output under exclusive ownership; none: as its component declares
 };
 
 struct ComponentSpec {

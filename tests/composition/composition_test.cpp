@@ -105,7 +105,7 @@ TEST(Composition, ReadsClockDomainAndLogLevels) {
 
 TEST(Arguments, AreFilledInFromTheDefaultOrTheCommandLine) {
   EXPECT_EQ(component(resolved(with_law(lab)), "world").parameters.at("seed"), Value(1));
-  const auto given = resolved(with_law(lab), {{"seed=42", "speed=75 cm/s", "start=[1 m, 2 m, 0 deg]"}, false});
+  const auto given = resolved(with_law(lab), {{"seed=42", "speed=75 cm/s", "start=[1 m, 2 m, 0 deg]"}});
   EXPECT_EQ(component(given, "world").parameters.at("seed"), Value(42));
   EXPECT_EQ(component(given, "r1/control").parameters.at("speed"), Value(0.75));
   EXPECT_EQ(to_text(component(given, "world").parameters.at("robots")), "{r1: {start: [1, 2, 0]}}");
@@ -118,7 +118,7 @@ args: {controller: {type: enum, values: [field, pursuit], default: field}}
 components:
   control: {type: "control/${controller}", remap: {odom: "/${controller}/odom"}}
 )",
-                                    {{"controller=pursuit"}, false});
+                                    {{"controller=pursuit"}});
   EXPECT_EQ(composition.components[0].manifest.type, "control/pursuit");
   EXPECT_EQ(topic(composition, "control", "odom"), "/pursuit/odom");
 }
@@ -187,30 +187,32 @@ TEST(Qos, IsTheOneDeclaredByTheWriterUnlessTheCompositionSaysOtherwise) {
 TEST(Qos, OfAReliableReaderOnABestEffortTopicIsAWarning) {
   const auto composition = resolved(R"(kervan: 1
 name: c
-topics: {"/waypoint": {reliability: best_effort}}
+topics: {"/r1/cmd_vel": {reliability: best_effort}}
 components:
   world: {type: sim/world, params: {map: world.yaml, robots: {r1: {start: [0 m, 0 m, 0 deg]}}}}
   planner: {type: planning/astar, remap: {odom: /r1/odom}}
-  control: {type: control/pursuit, remap: {odom: /r1/odom, goal: waypoint}}
+  control: {type: control/pursuit, remap: {odom: /r1/odom, goal: planner/waypoint, cmd_vel: /r1/cmd_vel}}
 )");
   ASSERT_EQ(composition.findings.size(), 1u);
   EXPECT_EQ(composition.findings[0].severity, Severity::warning);
   EXPECT_EQ(
       composition.findings[0].message,
-      "control.goal on '/waypoint': it expects a reliable topic, but its reliability is best_effort, from c.yaml:3:37 "
-      "(topic /waypoint): samples may be lost");
+      "world.r1/cmd_vel on '/r1/cmd_vel': it expects a reliable topic, but its reliability is best_effort, from "
+      "c.yaml:3:39 (topic /r1/cmd_vel): samples may be lost");
   EXPECT_TRUE(composition.usable());
 }
 
-TEST(Pairs, AreEveryWriterWithEveryReader) {
+TEST(Matrix, HoldsEveryWriterWithEveryReaderAndWhoHasNone) {
   const auto composition = resolved(with_law(lab));
   std::vector<std::string> lines;
   for (const Pair& pair : composition.pairs)
     lines.push_back(pair.topic + " " + pair.writer + " " + pair.reader + " " + pair.profile + " " + pair.verdict);
   EXPECT_EQ(lines, (std::vector<std::string>{
+                       "/clock world./clock  state nobody reads it",
                        "/r1/cmd_vel r1/control.cmd_vel world.r1/cmd_vel command ok",
                        "/r1/odom world.r1/odom r1/planner.odom sensor ok",
                        "/r1/odom world.r1/odom r1/control.odom sensor ok",
+                       "/r1/route r1/planner.route  latched nobody reads it",
                        "/r1/sonar world.r1/sonar r1/control.sonar radio ok",
                        "/r1/waypoint r1/planner.waypoint r1/control.goal latched ok",
                    }));
@@ -235,7 +237,7 @@ TEST(Containers, HoldEveryComponentOnce) {
 }
 
 TEST(Containers, BecomeOneWithPlaceAll) {
-  const auto composition = loaded(with_law(lab), {{}, true});
+  const auto composition = loaded(with_law(lab), {{}, {"all"}});
   ASSERT_EQ(composition.containers.size(), 1u);
   EXPECT_EQ(composition.containers[0].name, "all");
   EXPECT_EQ(composition.containers[0].components.size(), 4u);

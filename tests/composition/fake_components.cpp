@@ -70,6 +70,22 @@ struct NoParams {
   void describe(Visitor&) {}
 };
 
+struct BeatParams {
+  Duration period = 1s;
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(period, "period", {.min = 0.01, .max = 10.0, .help = "Time between two beats."});
+  }
+};
+
+struct GoalsParams {
+  std::map<std::string, NoParams> goals;
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(goals, "goals", {.help = "Robots by name."});
+  }
+};
+
 PortInfo port(std::string name, PortDirection direction, const std::string& type, PortQos qos) {
   PortInfo info;
   info.name = std::move(name);
@@ -90,6 +106,7 @@ const char* const odometry = "nav_msgs::msg::Odometry";
 const char* const sonars = "kervan_msgs::msg::SonarArray";
 const char* const twist = "geometry_msgs::msg::TwistStamped";
 const char* const pose = "geometry_msgs::msg::PoseStamped";
+const char* const header = "std_msgs::msg::Header";
 const char* const path = "nav_msgs::msg::Path";
 
 std::vector<PortInfo> world_ports(const ValueMap& values) {
@@ -117,7 +134,8 @@ void check_edges(const ValueMap& values) {
 
 std::vector<std::string> FakeComponents::types() const {
   return {"broken/module",  "control/field", "control/pursuit", "observe/log", "observe/mission",
-          "planning/astar", "safety/guard",  "sim/ghost",       "sim/world"};
+          "planning/astar", "safety/guard",  "sim/ghost",       "sim/world",   "test/beat",
+          "test/goals",     "test/listener", "test/optional"};
 }
 
 std::vector<ParameterInfo> FakeComponents::parameters(const std::string& type) {
@@ -125,6 +143,8 @@ std::vector<ParameterInfo> FakeComponents::parameters(const std::string& type) {
   if (type == "planning/astar") return schema_of<PlannerParams>();
   if (type == "control/field") return schema_of<FieldParams>();
   if (type == "observe/mission") return schema_of<MissionParams>();
+  if (type == "test/beat") return schema_of<BeatParams>();
+  if (type == "test/goals") return schema_of<GoalsParams>();
   if (type == "broken/module") throw std::runtime_error("undefined symbol: kervan_component");
   return schema_of<NoParams>();
 }
@@ -149,6 +169,18 @@ Manifest FakeComponents::manifest(const std::string& type, const ValueMap& value
     manifest.ports = {out("sonar", sonars, qos::state)};
   } else if (type == "observe/log") {
     manifest.ports = {in("/rosout", "rcl_interfaces::msg::Log", qos::event)};
+  } else if (type == "test/beat") {
+    manifest.ports = {out("beat", header, qos::state)};
+    manifest.timers = {{5s}, {load_parameters<BeatParams>(values).period}};
+  } else if (type == "test/listener") {
+    manifest.ports = {in("beat", header, qos::state.lossless().lease(2s).max_age(500ms))};
+  } else if (type == "test/optional") {
+    manifest.ports = {in("beat", header, qos::state.optional())};
+  } else if (type == "test/goals") {
+    for (const auto& [robot, goal] : load_parameters<GoalsParams>(values).goals) {
+      manifest.ports.push_back(in(robot + "/odom", odometry, qos::sensor));
+      manifest.ports.push_back(in(robot + "/sonar", sonars, qos::sensor));
+    }
   }
   return manifest;
 }

@@ -6,7 +6,7 @@
 namespace kervan::test {
 
 /// sim/world, planning/astar, control/field, control/pursuit, safety/guard, observe/mission, observe/log,
-/// sim/ghost and broken/module. The world's ports depend on its `robots`, as the real one's do.
+/// sim/ghost, broken/module and a few below test/. The world's ports depend on its `robots`, as the real one's do.
 class FakeComponents final : public composition::ComponentCatalogue {
  public:
   std::vector<std::string> types() const override;
