@@ -80,6 +80,17 @@ auto* find(Arguments& arguments, const std::string& name) {
   return found == arguments.end() ? nullptr : &*found;
 }
 
+/// A list from the command line. What the parser says of an unclosed bracket is meant for files, not for one line.
+Node parse_list(const std::string& text, ParameterKind kind, const Location& origin) {
+  try {
+    return config::parse(text, origin.file);
+  } catch (const ConfigError&) {
+    throw ConfigError(origin, kind == ParameterKind::pose
+                                  ? "'" + text + "' is not a pose; write e.g. [1 m, 2 m, 90 deg]"
+                                  : "'" + text + "' is not a list of points; write e.g. [[0 m, 0 m], [1 m, 50 cm]]");
+  }
+}
+
 /// Replaces `${name}`s in a scalar.
 class Substitution {
  public:
@@ -153,8 +164,9 @@ void give_from_command_line(std::vector<Argument>& arguments, const std::vector<
       throw ConfigError(origin, "the composition has no argument '" + name + "'" + config::hint(name, names, "it has"));
     }
     if (!seen.insert(name).second) throw ConfigError(origin, "'" + name + "' is given twice; keep one of the two");
-    const bool is_list = argument->info.kind == ParameterKind::pose || argument->info.kind == ParameterKind::points;
-    give(*argument, is_list ? config::parse(value, origin.file) : config::scalar(value, "", origin.file));
+    const ParameterKind kind = argument->info.kind;
+    const bool is_list = kind == ParameterKind::pose || kind == ParameterKind::points;
+    give(*argument, is_list ? parse_list(value, kind, origin) : config::scalar(value, "", origin.file));
   }
   for (const Argument& argument : arguments)
     if (!argument.value)
