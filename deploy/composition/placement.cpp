@@ -42,7 +42,8 @@ Restart read_restart(const Node& node) {
   }
   if (restart.policy == RestartPolicy::never && node.children.size() > 1)
     for (const Node& other : node.children)
-      if (other.name != "policy") other.fail_at_key("'" + other.name + "' has no meaning with the policy never");
+      if (other.name != "policy")
+        other.fail_at_key("'" + other.name + "' has no meaning for a container that is never started again");
   if (const Node* max = node.optional("max")) restart.max = count_of(*max, 1000);
   if (const Node* window = node.optional("window")) restart.window = positive(*window);
   if (const Node* backoff = node.optional("backoff")) restart.backoff = positive(*backoff);
@@ -54,10 +55,12 @@ Restart read_restart(const Node& node) {
   restart.longest_backoff = std::max(restart.longest_backoff, restart.backoff);
   if (policy == "quarantine") restart.quarantine = std::min(kDefaultQuarantine, restart.max);
   if (const Node* quarantine = node.optional("quarantine")) {
-    restart.quarantine = count_of(*quarantine, 1000);
-    if (restart.quarantine > restart.max)
-      quarantine->fail(quarantine->shown() + " is more than max, " + std::to_string(restart.max) +
-                       ": the attempts end before it");
+    const std::int64_t value = quarantine->as_integer();
+    // With more crashes than restarts the container would have been given up before.
+    if (value < 1 || value > restart.max)
+      quarantine->fail(quarantine->shown() + " is out of range; allowed: 1 .. " + std::to_string(restart.max) +
+                       ", the largest number of restarts");
+    restart.quarantine = static_cast<int>(value);
   }
   return restart;
 }

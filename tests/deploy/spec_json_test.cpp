@@ -22,9 +22,12 @@ runtime::ContainerSpec full_spec() {
   spec.threads = 3;
   spec.domain = {.id = 17,
                  .network = true,
-                 .interface = "eth0",
+                 .interface = "",
+                 .address = "10.0.0.10",
                  .tag = "a \"tag\"",
                  .peers = {"10.0.0.11", "10.0.0.12"},
+                 .multicast = dds::DomainConfig::Multicast::discovery_only,
+                 .processes = 20,
                  .external_id = 4,
                  .user_data = "kc=brain;"};
   spec.run_folder = "/runs/läb";
@@ -68,7 +71,8 @@ runtime::ContainerSpec full_spec() {
                              .direction = PortDirection::output,
                              .type = "sensor_msgs::msg::Range",
                              .layout_hash = 0xfedcba9876543210U,
-                             .optional = true});
+                             .optional = true,
+                             .strength = 7});
   component.ports.push_back({.port = "goal", .topic = "/r1/goal", .profile = *builtin_profile("latched")});
   spec.components.push_back(component);
   spec.components.push_back({.name = "world", .type = "sim/world", .container = "sim"});
@@ -87,7 +91,10 @@ TEST(SpecJson, GivesEverythingBackAsItWas) {
   EXPECT_EQ(back.domain.network, spec.domain.network);
   EXPECT_EQ(back.domain.interface, spec.domain.interface);
   EXPECT_EQ(back.domain.tag, spec.domain.tag);
+  EXPECT_EQ(back.domain.address, spec.domain.address);
   EXPECT_EQ(back.domain.peers, spec.domain.peers);
+  EXPECT_EQ(back.domain.multicast, spec.domain.multicast);
+  EXPECT_EQ(back.domain.processes, spec.domain.processes);
   EXPECT_EQ(back.domain.external_id, spec.domain.external_id);
   EXPECT_EQ(back.domain.user_data, spec.domain.user_data);
   EXPECT_EQ(back.run_folder, spec.run_folder);
@@ -115,6 +122,7 @@ TEST(SpecJson, GivesEverythingBackAsItWas) {
     EXPECT_EQ(one.ports[i].type, given.ports[i].type);
     EXPECT_EQ(one.ports[i].layout_hash, given.ports[i].layout_hash);
     EXPECT_EQ(one.ports[i].optional, given.ports[i].optional);
+    EXPECT_EQ(one.ports[i].strength, given.ports[i].strength);
   }
   EXPECT_EQ(to_json(back), to_json(spec));
 }
