@@ -30,7 +30,7 @@ Duration positive(const Node& node) {
 /// `restart: on-failure`, or a map with more to say.
 Restart read_restart(const Node& node) {
   Restart restart;
-  if (node.is_map()) node.only_keys({"policy", "max", "window", "backoff", "longest_backoff", "quarantine"});
+  if (node.is_map()) node.only_keys({"policy", "max", "window", "backoff", "quarantine"});
   const Node& name = node.is_map() ? node.required("policy") : node;
   const std::string policy = name.as_choice({"never", "on-failure", "always", "quarantine"});
   restart.policy = policy == "never"    ? RestartPolicy::never
@@ -46,13 +46,12 @@ Restart read_restart(const Node& node) {
         other.fail_at_key("'" + other.name + "' has no meaning for a container that is never started again");
   if (const Node* max = node.optional("max")) restart.max = count_of(*max, 1000);
   if (const Node* window = node.optional("window")) restart.window = positive(*window);
-  if (const Node* backoff = node.optional("backoff")) restart.backoff = positive(*backoff);
-  if (const Node* longest = node.optional("longest_backoff")) {
-    restart.longest_backoff = positive(*longest);
-    if (restart.longest_backoff < restart.backoff)
-      longest->fail(longest->shown() + " is shorter than backoff, " + duration_text(restart.backoff));
+  if (const Node* backoff = node.optional("backoff")) {
+    restart.backoff = backoff->as_duration();
+    if (restart.backoff <= Duration::zero() || restart.backoff > restart.longest_backoff)
+      backoff->fail(backoff->shown() + " is out of range; allowed: more than 0 s, at most " +
+                    duration_text(restart.longest_backoff));
   }
-  restart.longest_backoff = std::max(restart.longest_backoff, restart.backoff);
   if (policy == "quarantine") restart.quarantine = std::min(kDefaultQuarantine, restart.max);
   if (const Node* quarantine = node.optional("quarantine")) {
     const std::int64_t value = quarantine->as_integer();
