@@ -2,7 +2,7 @@
 // sim at the pace of real time. Judged on simulated time: braking begins within 250 ms of the last fresh command.
 // Measured on the wall: how long it takes until the container is active again.
 //
-// The fast run is two rounds. KERVAN_KILL_ROUNDS=100 asks for more, KERVAN_KILL_LOAD=2 for so many busy threads beside.
+// The fast run is two rounds; KERVAN_KILL_ROUNDS asks for more, KERVAN_KILL_LOAD for so many busy threads beside.
 #include <gtest/gtest.h>
 #include <signal.h>
 
@@ -189,12 +189,16 @@ TEST_P(Kill, OfAnyContainerButTheSimulatorsBrakesTheRobotAndTheMissionSucceedsAl
 INSTANTIATE_TEST_SUITE_P(RestartedAfter, Kill, testing::Values(kSoon, kLate),
                          [](const auto& test) { return std::string(test.param); });
 
-TEST(KillOfTheSimulator, EndsTheRunWithItsName) {
+class KillOfTheSimulator : public testing::TestWithParam<int> {};
+
+TEST_P(KillOfTheSimulator, EndsTheRunWithItsName) {
+  const std::string cause =
+      GetParam() == SIGKILL ? "died of SIGKILL" : "was stopped (SIGSTOP), which is as good as dead";
   Supervised run(composition(true, kSoon), "sim, step: 10ms, pace: real-time");
   run.wait_for(" recorder] driving");
   const auto start = Clock::now();
-  ::kill(run.container("sim"), SIGKILL);
-  run.wait_for("the container sim died of SIGKILL");
+  ::kill(run.container("sim"), GetParam());
+  run.wait_for("the container sim " + cause);
   const auto named = std::chrono::duration<double>(Clock::now() - start).count();
   const Result result = run.wait();
   std::cout << "named after " << named << " s, everything gone after "
@@ -202,9 +206,12 @@ TEST(KillOfTheSimulator, EndsTheRunWithItsName) {
   EXPECT_EQ(result.code, 1);
   EXPECT_EQ(run.summary()["result"], "aborted");
   const std::string reason = run.summary()["reason"];
-  EXPECT_TRUE(reason.starts_with("the container sim died of SIGKILL at ")) << reason;
+  EXPECT_TRUE(reason.starts_with("the container sim " + cause + " at ")) << reason;
   EXPECT_TRUE(reason.ends_with(" s; it keeps the time, so the run is over")) << reason;
 }
+
+INSTANTIATE_TEST_SUITE_P(By, KillOfTheSimulator, testing::Values(SIGKILL, SIGSTOP),
+                         [](const auto& test) { return test.param == SIGKILL ? "Kill" : "Stop"; });
 
 }  // namespace
 }  // namespace kervan::test
