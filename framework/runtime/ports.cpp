@@ -78,11 +78,11 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
   inbox_.push_back(arrival);
   // What comes from another container is only looked at when a fence says that its time has come.
   CountedWriters::Writer* const elsewhere = counted_.empty() ? nullptr : counted_.find(arrival.writer);
-  const bool last_awaited = elsewhere && ++elsewhere->arrived == elsewhere->awaited;
+  Countdown* const last_awaited = elsewhere && ++elsewhere->arrived == elsewhere->awaited ? arrivals_ : nullptr;
   unlock();
   if (overflow) dds::release(overflow);
   if (!elsewhere) mark_ready();
-  if (last_awaited) arrivals_->done();
+  if (last_awaited) last_awaited->done();
 }
 
 void InputPort::on_writer_gone(std::uint64_t writer) noexcept {
