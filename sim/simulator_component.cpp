@@ -256,7 +256,7 @@ class RobotPorts {
 /// Simulates robots in a world (simulation.hpp). The first tick publishes what the sensors see at the start; each later
 /// one moves the robots on to the present.
 class SimulatorComponent final : public Component {
-  SimulatorParams params_ = parameters<SimulatorParams>();
+  const SimulatorParams& params_ = parameters<SimulatorParams>();
   Simulation simulation_ = simulation();
   std::deque<RobotPorts> ports_ = ports();
   Output<rosgraph_msgs::msg::Clock> clock_{this, "/clock", qos::state, "Time of the simulation, every step."};

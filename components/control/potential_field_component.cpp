@@ -28,30 +28,49 @@ struct PotentialFieldParams {
   void describe(Visitor& v) {
     v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
     v(force.law, "law", {.choices = {"potential_classic", "potential_gecui"}, .help = "How an obstacle repels."});
-    v(force.xi, "xi", {.min = 0.0, .max = 100.0, .help = "Attraction for each metre to the waypoint."});
-    v(force.eta, "eta", {.min = 0.0, .max = 100.0, .help = "Strength of the repulsion."});
+    v(force.xi, "xi", {.min = 0.0, .max = 100.0, .help = "Attraction for each metre to the waypoint.", .live = true});
+    v(force.eta, "eta", {.min = 0.0, .max = 100.0, .help = "Strength of the repulsion.", .live = true});
     v(force.n, "n",
-      {.min = 0.0, .max = 10.0, .help = "Power of the distance to the goal in the repulsion of Ge & Cui."});
-    v(force.rho0, "rho0", {.unit = "m", .min = 0.05, .max = 10.0, .help = "An obstacle acts within this distance."});
+      {.min = 0.0,
+       .max = 10.0,
+       .help = "Power of the distance to the goal in the repulsion of Ge & Cui.",
+       .live = true});
+    v(force.rho0, "rho0",
+      {.unit = "m", .min = 0.05, .max = 10.0, .help = "An obstacle acts within this distance.", .live = true});
     v(force.rho_g_cap, "rho_g_cap",
-      {.unit = "m", .min = 0.05, .max = 1000.0, .help = "The force takes a farther waypoint to be this far."});
-    v(drive.speed, "speed", {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Speed on a free course."});
-    v(drive.full_force, "full_force", {.min = 0.01, .max = 100.0, .help = "A force of this or more means full speed."});
+      {.unit = "m",
+       .min = 0.05,
+       .max = 1000.0,
+       .help = "The force takes a farther waypoint to be this far.",
+       .live = true});
+    v(drive.speed, "speed", {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Speed on a free course.", .live = true});
+    v(drive.full_force, "full_force",
+      {.min = 0.01, .max = 100.0, .help = "A force of this or more means full speed.", .live = true});
     v(drive.turn_gain, "turn_gain",
-      {.unit = "1/s", .min = 0.0, .max = 20.0, .help = "Turning rate per angle to turn."});
-    v(drive.turn_rate, "turn_rate", {.unit = "rad/s", .min = 0.0, .max = 10.0, .help = "Highest turning rate."});
+      {.unit = "1/s", .min = 0.0, .max = 20.0, .help = "Turning rate per angle to turn.", .live = true});
+    v(drive.turn_rate, "turn_rate",
+      {.unit = "rad/s", .min = 0.0, .max = 10.0, .help = "Highest turning rate.", .live = true});
     v(drive.stop_distance, "stop_distance",
-      {.unit = "m", .min = 0.0, .max = 5.0, .help = "Stands this far from an obstacle, from the robot's centre."});
-    v(drive.braking, "braking", {.unit = "m/s2", .min = 0.01, .max = 10.0, .help = "Deceleration it may count on."});
+      {.unit = "m",
+       .min = 0.0,
+       .max = 5.0,
+       .help = "Stands this far from an obstacle, from the robot's centre.",
+       .live = true});
+    v(drive.braking, "braking",
+      {.unit = "m/s2", .min = 0.01, .max = 10.0, .help = "Deceleration it may count on.", .live = true});
     v(arrive_within, "arrive_within",
-      {.unit = "m", .min = 0.001, .max = 1.0, .help = "Stands still this near to its waypoint until the next comes."});
+      {.unit = "m",
+       .min = 0.001,
+       .max = 1.0,
+       .help = "Stands still this near to its waypoint until the next comes.",
+       .live = true});
   }
 };
 
 /// Drives a robot along the force of a potential field (potential_field.hpp). Stands, and reports `degraded` with the
 /// reason, while an input it needs is missing or stale.
 class PotentialFieldComponent final : public Component {
-  PotentialFieldParams params_ = parameters<PotentialFieldParams>();
+  const PotentialFieldParams& params_ = parameters<PotentialFieldParams>();
   Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched,
                                                    &PotentialFieldComponent::on_waypoint,
                                                    "Where to drive, in the frame of the odometry."};

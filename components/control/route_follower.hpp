@@ -20,6 +20,9 @@ class RouteFollower {
  public:
   explicit RouteFollower(const RouteFollowerParams& params) : params_(params) {}
 
+  /// Other distances from here on; what was passed stays passed.
+  void set_params(const RouteFollowerParams& params) { params_ = params; }
+
   /// Starts a route from its first waypoint; points in metres, in the frame of the positions given to advance(). An
   /// empty route leaves nothing to do.
   void start(std::vector<geometry::Vector2> route);

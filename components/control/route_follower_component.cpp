@@ -23,15 +23,20 @@ struct RouteFollowerComponentParams {
       {.unit = "m",
        .min = 0.0,
        .max = 10.0,
-       .help = "An intermediate waypoint counts as passed within this distance."});
+       .help = "An intermediate waypoint counts as passed within this distance.",
+       .live = true});
     v(follow.arrive_within, "arrive_within",
-      {.unit = "m", .min = 0.0, .max = 10.0, .help = "The last waypoint counts as reached within this distance."});
+      {.unit = "m",
+       .min = 0.0,
+       .max = 10.0,
+       .help = "The last waypoint counts as reached within this distance.",
+       .live = true});
   }
 };
 
 /// Hands out the waypoint to drive to now. An empty route asks the robot to stay where it is.
 class RouteFollowerComponent final : public Component {
-  RouteFollowerComponentParams params_ = parameters<RouteFollowerComponentParams>();
+  const RouteFollowerComponentParams& params_ = parameters<RouteFollowerComponentParams>();
   RouteFollower follower_{params_.follow};
   Input<nav_msgs::msg::Path> route_{this, "route", qos::latched, &RouteFollowerComponent::on_route,
                                     "Waypoints to drive through, in order."};
@@ -39,6 +44,8 @@ class RouteFollowerComponent final : public Component {
                                        "Where the robot is."};
   Output<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, "Where to drive now."};
   std::string frame_;
+
+  void on_parameters_changed() override { follower_.set_params(params_.follow); }
 
   void on_route(const nav_msgs::msg::Path& route, Time now) {
     std::vector<geometry::Vector2> points;

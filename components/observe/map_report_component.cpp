@@ -127,7 +127,7 @@ class Subject {
 /// Writes trajectory.csv while the run goes on and map.svg at its end, into the run's folder. What it does not receive
 /// it leaves out; without a folder it writes nothing.
 class MapReportComponent final : public Component {
-  MapReportParams params_ = parameters<MapReportParams>();
+  const MapReportParams& params_ = parameters<MapReportParams>();
   std::deque<Subject> robots_ = subjects();
   Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), "True shape of the world."};
   Input<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched.optional(), "How the mission ended."};

@@ -125,7 +125,7 @@ class Contender {
 /// Sends robots to their goals and judges them on the simulator's truth (mission_score.hpp). Ends the run when all have
 /// arrived or the time is up; a run that is ended from outside before that is `aborted`.
 class MissionComponent final : public Component {
-  MissionComponentParams params_ = parameters<MissionComponentParams>();
+  const MissionComponentParams& params_ = parameters<MissionComponentParams>();
   std::deque<Contender> robots_ = contenders();
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "How the mission ended."};
   Timer tick_{this, params_.period, &MissionComponent::on_tick};

@@ -31,7 +31,11 @@ struct WaypointAstarParams {
     v(edges, "edges", {.help = "Pairs of waypoints joined by a free straight line.", .required = true});
     v(costs, "costs", {.unit = "m", .min = 0.0, .help = "One for each edge, at least its length; none: the lengths."});
     v(reach, "reach",
-      {.unit = "m", .min = 0.0, .max = 100.0, .help = "Farthest start and goal may lie from a waypoint."});
+      {.unit = "m",
+       .min = 0.0,
+       .max = 100.0,
+       .help = "Farthest start and goal may lie from a waypoint.",
+       .live = true});
   }
 };
 
@@ -82,7 +86,7 @@ double length(const nav_msgs::msg::Path& path) {
 
 /// Plans once for every goal, from where the robot is then. A goal without a route gives an empty route and `degraded`.
 class WaypointAstarComponent final : public Component {
-  WaypointAstarParams params_ = parameters<WaypointAstarParams>();
+  const WaypointAstarParams& params_ = parameters<WaypointAstarParams>();
   WaypointGraph graph_ = graph_of(params_);
   Input<geometry_msgs::msg::PoseStamped> goal_{this, "goal", qos::latched, &WaypointAstarComponent::on_goal,
                                                "Where the robot is to go, in the map."};

@@ -17,13 +17,22 @@ double approach(double value, double target, double up, double down) {
 
 }  // namespace
 
+geometry::Twist2 DriveGuard::limited(const geometry::Twist2& wanted) const {
+  return {std::clamp(wanted.linear, -params_.max_speed, params_.max_speed),
+          std::clamp(wanted.angular, -params_.max_turn, params_.max_turn)};
+}
+
+void DriveGuard::set_params(const DriveGuardParams& params) {
+  params_ = params;
+  wanted_ = limited(wanted_);
+}
+
 bool DriveGuard::command(Time received, const geometry::Twist2& wanted) {
   if (!std::isfinite(wanted.linear) || !std::isfinite(wanted.angular)) {
     ++refused_;
     return false;
   }
-  wanted_ = {std::clamp(wanted.linear, -params_.max_speed, params_.max_speed),
-             std::clamp(wanted.angular, -params_.max_turn, params_.max_turn)};
+  wanted_ = limited(wanted);
   received_ = received;
   return true;
 }

@@ -32,6 +32,9 @@ class DriveGuard {
  public:
   explicit DriveGuard(const DriveGuardParams& params) : params_(params) {}
 
+  /// Other limits from the next step() on; the output reaches them at the accelerations they hold.
+  void set_params(const DriveGuardParams& params);
+
   /// A command received at `received` on the clock of step(). One with NaN or infinity is no command: it is refused
   /// (false), counted, and the age of the last good one runs on.
   bool command(Time received, const geometry::Twist2& wanted);
@@ -49,6 +52,8 @@ class DriveGuard {
   std::uint64_t refused() const { return refused_; }
 
  private:
+  geometry::Twist2 limited(const geometry::Twist2& wanted) const;
+
   DriveGuardParams params_;
   std::optional<Time> received_;  // of the last good command, until it is forgotten
   geometry::Twist2 wanted_;

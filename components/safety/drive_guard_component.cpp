@@ -15,19 +15,23 @@ struct DriveGuardComponentParams {
   void describe(Visitor& v) {
     v(guard.period, "period", {.min = 0.005, .max = 0.2, .help = "Time between two commands to the drive."});
     v(guard.timeout, "timeout", {.min = 0.01, .max = 5.0, .help = "Brakes no later than this after the last command."});
-    v(guard.max_speed, "max_speed", {.unit = "m/s", .min = 0.0, .max = 5.0, .help = "Highest speed, either way."});
-    v(guard.max_turn, "max_turn", {.unit = "rad/s", .min = 0.0, .max = 20.0, .help = "Highest turning rate."});
-    v(guard.acceleration, "acceleration", {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Speeding up."});
-    v(guard.deceleration, "deceleration", {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Full braking."});
+    v(guard.max_speed, "max_speed",
+      {.unit = "m/s", .min = 0.0, .max = 5.0, .help = "Highest speed, either way.", .live = true});
+    v(guard.max_turn, "max_turn",
+      {.unit = "rad/s", .min = 0.0, .max = 20.0, .help = "Highest turning rate.", .live = true});
+    v(guard.acceleration, "acceleration",
+      {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Speeding up.", .live = true});
+    v(guard.deceleration, "deceleration",
+      {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "Full braking.", .live = true});
     v(guard.turn_acceleration, "turn_acceleration",
-      {.unit = "rad/s2", .min = 0.01, .max = 100.0, .help = "Change of the turning rate."});
+      {.unit = "rad/s2", .min = 0.01, .max = 100.0, .help = "Change of the turning rate.", .live = true});
   }
 };
 
 /// Stands between whoever steers and the drive (drive_guard.hpp): commands come as they like and leave at a steady
 /// rate.
 class DriveGuardComponent final : public Component {
-  DriveGuardComponentParams params_ = checked(parameters<DriveGuardComponentParams>());
+  const DriveGuardComponentParams& params_ = checked(parameters<DriveGuardComponentParams>());
   DriveGuard guard_{params_.guard};
   // The port judges the age by when a command was received, the guard by when it was handled. They differ when this
   // component was held up, and then the port is right.
@@ -42,7 +46,9 @@ class DriveGuardComponent final : public Component {
 
   void on_activate(Time now) override { activated_ = now; }
 
-  static DriveGuardComponentParams checked(DriveGuardComponentParams params) {
+  void on_parameters_changed() override { guard_.set_params(params_.guard); }
+
+  static const DriveGuardComponentParams& checked(const DriveGuardComponentParams& params) {
     if (params.guard.timeout < params.guard.period)
       throw ParameterError("timeout", "it is shorter than the period, so no command would ever be driven");
     return params;

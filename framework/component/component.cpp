@@ -38,11 +38,10 @@ std::string_view to_text(ComponentState state) {
 
 Component::Component() {
   if (!current_setup) throw std::logic_error("a component is made by kervan::construct(), a container or a harness");
-  static const ValueMap no_parameters;
   name_ = current_setup->name;
   describing_ = current_setup->describing;
   declared_ = current_setup->declared;
-  parameters_ = current_setup->parameters ? current_setup->parameters : &no_parameters;
+  if (current_setup->parameters) values_ = *current_setup->parameters;
   run_folder_ = current_setup->run_folder;
 }
 
@@ -51,7 +50,29 @@ Component::~Component() = default;
 void Component::declare_parameters(std::vector<ParameterInfo> schema) {
   schema_ = std::move(schema);
   if (declared_) *declared_ = schema_;
-  validate(schema_, *parameters_, !describing_);
+  if (held_) throw std::logic_error("a component has one struct of parameters");
+  validate(schema_, values_, !describing_);
+}
+
+void Component::change_parameters(const ValueMap& changes) {
+  if (changes.empty()) return;
+  if (!held_) throw ParameterError(changes.begin()->first, "there is no such parameter; this component has none");
+  ValueMap wanted = values_;
+  for (const auto& [name, value] : changes) wanted[name] = value;
+  validate(schema_, wanted);
+  require_live(schema_, changes);
+  const auto use = [this](const ValueMap& values) {
+    held_->load(values);
+    on_parameters_changed();
+  };
+  if (wanted == values_) return;
+  try {
+    use(wanted);
+  } catch (const ParameterError&) {
+    use(values_);
+    throw;
+  }
+  values_ = std::move(wanted);
 }
 
 void Component::report_active() {

@@ -1,5 +1,5 @@
-/// The base of every component. Ports, timers and parameters are members: the class body is the declaration. A component
-/// is a .cpp without a header, built with kervan_component() and ended by KERVAN_COMPONENT.
+/// The base of every component. Ports, timers and parameters are members: the class body is the declaration. A
+/// component is a .cpp without a header, built with kervan_component() and ended by KERVAN_COMPONENT.
 #pragma once
 
 #include <filesystem>
@@ -52,11 +52,16 @@ class Component {
  protected:
   Component();
 
-  /// The parameters of the composition, checked against P's describe lines. Throws ParameterError.
+  /// The parameters of the composition, checked against P's describe lines; once in a component's life. The reference
+  /// stays good, and behind it live parameters change between two handlers; a copy stays as it is. Throws
+  /// ParameterError.
   template <class P>
-  P parameters() {
+  const P& parameters() {
     declare_parameters(schema_of<P>());
-    return load_parameters<P>(*parameters_);
+    auto held = std::make_unique<detail::HeldParameters<P>>(values_);
+    const P& parameters = held->parameters;
+    held_ = std::move(held);
+    return parameters;
   }
 
   /// Only the declarations are wanted: a required parameter may still have its default (an empty path, an empty map).
@@ -67,6 +72,9 @@ class Component {
 
   /// All ports exist and match; runs once before the first handler.
   virtual void on_activate(Time) {}
+  /// Live parameters have changed, what parameters() refers to already has the new values: pass them on to whatever
+  /// keeps a copy. What it throws as ParameterError refuses the change; then it is called again, with the old values.
+  virtual void on_parameters_changed() {}
   /// The run ends: say last words (a zero command). Samples published here still reach the others.
   virtual void on_deactivate(Time) {}
   /// After everybody's last words: write files, join threads. Nothing can be published any more.
@@ -97,10 +105,13 @@ class Component {
   friend Manifest describe(const struct ComponentClass& type, const ValueMap& parameters);
 
   void declare_parameters(std::vector<ParameterInfo> schema);
+  /// Gives live parameters new values, all of them or, throwing ParameterError, none.
+  void change_parameters(const ValueMap& changes);
 
   std::string name_;
   bool describing_;
-  const ValueMap* parameters_;
+  ValueMap values_;  ///< as given, by the composition and later changes
+  std::unique_ptr<detail::ParameterHolder> held_;
   std::vector<ParameterInfo>* declared_;  ///< only valid during construction
   std::filesystem::path run_folder_;
   std::vector<ParameterInfo> schema_;
@@ -125,8 +136,8 @@ struct ComponentClass {
 /// Throws ParameterError, or ConfigError when a file that a parameter names is wrong.
 std::unique_ptr<Component> construct(const ComponentClass& type, const ComponentSetup& setup);
 
-/// The manifest of a type with these parameters, by construction. Required parameters may be missing; a constructor that
-/// cannot do without them throws, unless it asks describing(). Throws what the constructor throws.
+/// The manifest of a type with these parameters, by construction. Required parameters may be missing; a constructor
+/// that cannot do without them throws, unless it asks describing(). Throws what the constructor throws.
 Manifest describe(const ComponentClass& type, const ValueMap& parameters);
 
 /// The parameters of a type, known even if it cannot be constructed without some of them.
@@ -135,7 +146,7 @@ std::vector<ParameterInfo> parameters_of(const ComponentClass& type);
 }  // namespace kervan
 
 /// Ends a component's .cpp: its class, the type name it is loaded by, and one line of help.
-#define KERVAN_COMPONENT(Class, type, help)                                                             \
-  extern "C" __attribute__((visibility("default"))) const ::kervan::ComponentClass kervan_component;    \
-  const ::kervan::ComponentClass kervan_component{                                                      \
+#define KERVAN_COMPONENT(Class, type, help)                                                          \
+  extern "C" __attribute__((visibility("default"))) const ::kervan::ComponentClass kervan_component; \
+  const ::kervan::ComponentClass kervan_component{                                                   \
       type, help, []() -> std::unique_ptr<::kervan::Component> { return std::make_unique<Class>(); }};

@@ -128,8 +128,7 @@ std::optional<Trouble> check(const ParameterInfo& info, const Value& value) {
       return wrong_type(info, value);
     case ParameterKind::integer:
     case ParameterKind::number:
-    case ParameterKind::duration:
-      return check_number(info, value);
+    case ParameterKind::duration: return check_number(info, value);
     case ParameterKind::text:
       if (std::holds_alternative<std::string>(value)) return std::nullopt;
       return wrong_type(info, value);
@@ -139,20 +138,13 @@ std::optional<Trouble> check(const ParameterInfo& info, const Value& value) {
       if (path->empty()) return Trouble{"", "the name of the file is empty"};
       return std::nullopt;
     }
-    case ParameterKind::choice:
-      return check_choice(info, value);
-    case ParameterKind::numbers:
-      return check_items(info, value, ParameterKind::number, 0);
-    case ParameterKind::texts:
-      return check_items(info, value, ParameterKind::text, 0);
-    case ParameterKind::pose:
-      return check_items(info, value, ParameterKind::number, 3);
-    case ParameterKind::points:
-      return check_tuples(info, value, ParameterKind::number);
-    case ParameterKind::pairs:
-      return check_tuples(info, value, ParameterKind::integer);
-    case ParameterKind::records:
-      return check_records(info, value);
+    case ParameterKind::choice: return check_choice(info, value);
+    case ParameterKind::numbers: return check_items(info, value, ParameterKind::number, 0);
+    case ParameterKind::texts: return check_items(info, value, ParameterKind::text, 0);
+    case ParameterKind::pose: return check_items(info, value, ParameterKind::number, 3);
+    case ParameterKind::points: return check_tuples(info, value, ParameterKind::number);
+    case ParameterKind::pairs: return check_tuples(info, value, ParameterKind::integer);
+    case ParameterKind::records: return check_records(info, value);
   }
   return std::nullopt;
 }
@@ -180,32 +172,19 @@ std::size_t edits(const std::string& a, const std::string& b) {
 
 std::string to_text(ParameterKind kind) {
   switch (kind) {
-    case ParameterKind::boolean:
-      return "true or false";
-    case ParameterKind::integer:
-      return "integer";
-    case ParameterKind::number:
-      return "number";
-    case ParameterKind::duration:
-      return "duration";
-    case ParameterKind::text:
-      return "text";
-    case ParameterKind::choice:
-      return "choice";
-    case ParameterKind::path:
-      return "path of a file";
-    case ParameterKind::numbers:
-      return "list of numbers";
-    case ParameterKind::texts:
-      return "list of texts";
-    case ParameterKind::pose:
-      return "[x, y, yaw]";
-    case ParameterKind::points:
-      return "list of [x, y]";
-    case ParameterKind::pairs:
-      return "list of [i, j]";
-    case ParameterKind::records:
-      return "map of records";
+    case ParameterKind::boolean: return "true or false";
+    case ParameterKind::integer: return "integer";
+    case ParameterKind::number: return "number";
+    case ParameterKind::duration: return "duration";
+    case ParameterKind::text: return "text";
+    case ParameterKind::choice: return "choice";
+    case ParameterKind::path: return "path of a file";
+    case ParameterKind::numbers: return "list of numbers";
+    case ParameterKind::texts: return "list of texts";
+    case ParameterKind::pose: return "[x, y, yaw]";
+    case ParameterKind::points: return "list of [x, y]";
+    case ParameterKind::pairs: return "list of [i, j]";
+    case ParameterKind::records: return "map of records";
   }
   return "";
 }
@@ -220,6 +199,16 @@ std::optional<std::string> refusal(const ParameterInfo& info, const Value& value
 void validate(const std::vector<ParameterInfo>& schema, const ValueMap& values, bool complete) {
   if (const auto trouble = check_members(schema, values, complete))
     throw ParameterError(trouble->where.substr(1), trouble->message);
+}
+
+void require_live(const std::vector<ParameterInfo>& schema, const ValueMap& changes) {
+  std::vector<std::string> live;
+  for (const ParameterInfo& info : schema)
+    if (info.live) live.push_back(info.name);
+  for (const auto& [name, value] : changes)
+    if (std::find(live.begin(), live.end(), name) == live.end())
+      throw ParameterError(name, "cannot be changed while the component runs; " +
+                                     (live.empty() ? "it has no live parameters" : "live are: " + joined(live)));
 }
 
 std::optional<std::string> nearest(const std::string& word, const std::vector<std::string>& known) {

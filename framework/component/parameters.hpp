@@ -121,20 +121,34 @@ void from_value(const Value& value, std::vector<IndexPair>& v);
 
 template <class T>
 constexpr ParameterKind kind_of() {
-  if constexpr (std::is_same_v<T, bool>) return ParameterKind::boolean;
-  else if constexpr (std::is_same_v<T, std::int64_t>) return ParameterKind::integer;
-  else if constexpr (std::is_same_v<T, double>) return ParameterKind::number;
-  else if constexpr (std::is_same_v<T, Duration>) return ParameterKind::duration;
-  else if constexpr (std::is_same_v<T, std::string>) return ParameterKind::text;
-  else if constexpr (std::is_same_v<T, FilePath>) return ParameterKind::path;
-  else if constexpr (std::is_same_v<T, std::vector<double>>) return ParameterKind::numbers;
-  else if constexpr (std::is_same_v<T, std::vector<std::string>>) return ParameterKind::texts;
-  else if constexpr (std::is_same_v<T, geometry::Pose2>) return ParameterKind::pose;
-  else if constexpr (std::is_same_v<T, std::vector<geometry::Vector2>>) return ParameterKind::points;
-  else if constexpr (std::is_same_v<T, std::vector<IndexPair>>) return ParameterKind::pairs;
-  else if constexpr (std::is_enum_v<T>) return ParameterKind::choice;
-  else if constexpr (is_records<T>::value) return ParameterKind::records;
-  else static_assert(sizeof(T) == 0, "this type is not supported as a parameter");
+  if constexpr (std::is_same_v<T, bool>)
+    return ParameterKind::boolean;
+  else if constexpr (std::is_same_v<T, std::int64_t>)
+    return ParameterKind::integer;
+  else if constexpr (std::is_same_v<T, double>)
+    return ParameterKind::number;
+  else if constexpr (std::is_same_v<T, Duration>)
+    return ParameterKind::duration;
+  else if constexpr (std::is_same_v<T, std::string>)
+    return ParameterKind::text;
+  else if constexpr (std::is_same_v<T, FilePath>)
+    return ParameterKind::path;
+  else if constexpr (std::is_same_v<T, std::vector<double>>)
+    return ParameterKind::numbers;
+  else if constexpr (std::is_same_v<T, std::vector<std::string>>)
+    return ParameterKind::texts;
+  else if constexpr (std::is_same_v<T, geometry::Pose2>)
+    return ParameterKind::pose;
+  else if constexpr (std::is_same_v<T, std::vector<geometry::Vector2>>)
+    return ParameterKind::points;
+  else if constexpr (std::is_same_v<T, std::vector<IndexPair>>)
+    return ParameterKind::pairs;
+  else if constexpr (std::is_enum_v<T>)
+    return ParameterKind::choice;
+  else if constexpr (is_records<T>::value)
+    return ParameterKind::records;
+  else
+    static_assert(sizeof(T) == 0, "this type is not supported as a parameter");
 }
 
 /// Collects the ParameterInfo of each describe line; the field's value is the default.
@@ -203,6 +217,9 @@ std::vector<ParameterInfo> schema_of() {
 /// Throws ParameterError if a name is unknown, a value refused or, with `complete`, a required one missing.
 void validate(const std::vector<ParameterInfo>& schema, const ValueMap& values, bool complete = true);
 
+/// Throws ParameterError if one of `changes` belongs to a parameter that is not declared live.
+void require_live(const std::vector<ParameterInfo>& schema, const ValueMap& changes);
+
 /// A struct of parameters filled from `values`, which must have passed validate().
 template <class P>
 P load_parameters(const ValueMap& values) {
@@ -211,5 +228,25 @@ P load_parameters(const ValueMap& values) {
   parameters.describe(visitor);
   return parameters;
 }
+
+namespace detail {
+
+/// A struct of parameters, whatever its type, that can be filled anew.
+class ParameterHolder {
+ public:
+  virtual ~ParameterHolder() = default;
+  virtual void load(const ValueMap& values) = 0;
+};
+
+template <class P>
+class HeldParameters final : public ParameterHolder {
+ public:
+  explicit HeldParameters(const ValueMap& values) : parameters(load_parameters<P>(values)) {}
+  void load(const ValueMap& values) override { parameters = load_parameters<P>(values); }
+
+  P parameters;
+};
+
+}  // namespace detail
 
 }  // namespace kervan

@@ -11,6 +11,7 @@
 #include "framework/runtime/lockstep.hpp"
 #include "framework/runtime/log.hpp"
 #include "framework/runtime/members.hpp"
+#include "framework/runtime/operations.hpp"
 #include "framework/runtime/status.hpp"
 #include "framework/runtime/watch.hpp"
 
@@ -25,6 +26,9 @@ bool writes_clock(const std::vector<std::unique_ptr<ComponentInstance>>& instanc
       if (output->binding().topic == kClockTopic) return true;
   return false;
 }
+
+/// Writers that have gone and whose indices are still known, for samples that nobody has looked at yet.
+constexpr std::size_t kDepartedWriters = 256;
 
 }  // namespace
 
@@ -42,7 +46,10 @@ std::string_view to_text(RunEnd end) {
 }
 
 Container::Container(ContainerSpec spec, ComponentRegistry& registry)
-    : spec_(std::move(spec)), clock_(spec_.clock == ClockMode::sim) {
+    : spec_(std::move(spec)),
+      registry_(registry),
+      clock_(spec_.clock == ClockMode::sim),
+      operations_(std::make_unique<Operations>(*this, registry)) {
   spec_.domain.user_data = dds::to_user_data({spec_.name, composition_hash(spec_)});
   domain_ = std::make_unique<dds::Domain>(spec_.domain, clock_.stamp());
   // Several processes would write over each other's lines in one file.
@@ -53,26 +60,21 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry)
   status_writer_ = std::make_unique<StatusWriter>(*domain_);
   if (spec_.clock == ClockMode::lockstep) lockstep_ = std::make_unique<Lockstep>(*this, instant_, spec_.threads);
   // An endpoint's index counts those of all components before it, wherever they run.
-  FirstIndices first;
-  for (unsigned index = 0; index < spec_.components.size(); ++index) {
-    const ComponentSpec& component = spec_.components[index];
-    if (!is_local(spec_, component)) {
+  Slot slot;
+  for (const ComponentSpec& component : spec_.components) {
+    slots_.push_back(slot);
+    ++slot.index;
+    if (is_local(spec_, component) && std::ranges::count(spec_.absent, component.name) == 0) {
+      const ComponentInstance& instance = add(component);
+      slot.first_writer += static_cast<unsigned>(instance.outputs().size());
+      slot.first_reader += static_cast<unsigned>(instance.inputs().size());
+    } else {
       for (const PortBinding& port : component.ports)
-        ++(port.direction == PortDirection::output ? first.writer : first.reader);
-      continue;
+        ++(port.direction == PortDirection::output ? slot.first_writer : slot.first_reader);
     }
-    const ComponentClass* type = registry.find(component.type);
-    if (!type) throw ConfigError({}, "there is no component type '" + component.type + "'");
-    try {
-      instances_.push_back(std::make_unique<ComponentInstance>(*this, component, *type, index, first));
-    } catch (const ParameterError& error) {
-      throw ParameterError(component.name + "." + error.parameter(), error.message());
-    }
-    for (const auto& output : instances_.back()->outputs())
-      writer_indices_.emplace(output->writer().handle(), output->index());
-    first.writer += static_cast<unsigned>(instances_.back()->outputs().size());
-    first.reader += static_cast<unsigned>(instances_.back()->inputs().size());
   }
+  slots_.push_back(slot);
+  for (const ComponentSpec& component : spec_.loaded) add(component);
   if (lockstep_) {
     lockstep_->connect();
     return;
@@ -83,7 +85,96 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry)
         std::make_unique<ClockReader>(*domain_, clock_, writer ? writer->reliability : Reliability::reliable);
   }
   if (spec_.members.size() > 1) members_ = std::make_unique<Members>(*domain_, spec_, [this] { bell_.ring(); });
+  watch_anew();
+}
+
+/// It looks at the ports in a thread of its own, so none may go while it does.
+void Container::watch_anew() {
+  watch_.reset();
   watch_ = std::make_unique<Watch>(*this, bell_, [this] { hear_members(); });
+}
+
+Slot Container::slot_of(const ComponentSpec& spec) const {
+  for (std::size_t i = 0; i < spec_.components.size(); ++i)
+    if (spec_.components[i].name == spec.name && spec_.components[i].type == spec.type) return slots_[i];
+  // Behind the composition's. The endpoints of several containers lie between each other, so that no two are the same.
+  const auto self = std::ranges::find(spec_.members, spec_.name);
+  const auto place = self == spec_.members.end() ? 0u : static_cast<unsigned>(self - spec_.members.begin());
+  const unsigned stride = std::max(1u, static_cast<unsigned>(spec_.members.size()));
+  const Slot& behind = slots_.back();
+  return {.index = behind.index + loaded_ever_,
+          .first_writer = behind.first_writer + stride * loaded_writers_ + place,
+          .first_reader = behind.first_reader + stride * loaded_readers_ + place,
+          .stride = stride};
+}
+
+ComponentInstance& Container::add(const ComponentSpec& spec) {
+  const ComponentClass* type = registry_.find(spec.type);
+  if (!type) throw ConfigError({}, "there is no component type '" + spec.type + "'");
+  const Slot slot = slot_of(spec);
+  std::unique_ptr<ComponentInstance> made;
+  try {
+    made = std::make_unique<ComponentInstance>(*this, spec, *type, slot);
+  } catch (const ParameterError& error) {
+    throw ParameterError(spec.name + "." + error.parameter(), error.message());
+  } catch (...) {
+    if (lockstep_) lockstep_->forget_departed();  // it may have had samples already
+    throw;
+  }
+  if (slot.index >= slots_.back().index && slots_.size() > spec_.components.size()) {
+    ++loaded_ever_;
+    loaded_writers_ += static_cast<unsigned>(made->outputs().size());
+    loaded_readers_ += static_cast<unsigned>(made->inputs().size());
+  }
+  {
+    const std::lock_guard lock(writer_indices_mutex_);
+    for (const auto& output : made->outputs()) writer_indices_.emplace(output->writer().handle(), output->index());
+  }
+  for (const auto& output : made->outputs()) {
+    const auto departed = departed_traces_.find(output->index());
+    if (departed == departed_traces_.end()) continue;
+    output->continue_trace(departed->second.first, departed->second.second);
+    departed_traces_.erase(departed);
+  }
+  const auto behind = std::ranges::find_if(instances_, [&](const auto& other) { return other->index() > slot.index; });
+  ComponentInstance& added = **instances_.insert(behind, std::move(made));
+  if (watch_) watch_anew();
+  return added;
+}
+
+void Container::remove(ComponentInstance& instance) {
+  Dispatcher* const dispatcher = instance.dispatcher.load();
+  if (dispatcher) dispatcher->forget(instance);
+  for (const auto& output : instance.outputs()) {
+    if (output->trace() != 0) departed_traces_[output->index()] = {output->published(), output->trace()};
+    departed_writers_.push_back(output->writer().handle());
+  }
+  status_writer_->remove(instance, spec_.name, present().time);
+  const auto place = std::ranges::find_if(instances_, [&](const auto& other) { return other.get() == &instance; });
+  const bool watched = watch_ != nullptr;
+  watch_.reset();
+  {
+    // Its endpoints go first: what they set off still finds its dispatcher.
+    const std::unique_ptr<ComponentInstance> leaving = std::move(*place);
+    instances_.erase(place);
+  }
+  if (watched) watch_anew();
+  if (lockstep_) lockstep_->forget_departed();
+  detach(dispatcher);
+  const std::lock_guard lock(writer_indices_mutex_);
+  for (; departed_writers_.size() > kDepartedWriters; departed_writers_.pop_front())
+    writer_indices_.erase(departed_writers_.front());
+}
+
+Instant Container::present() const { return lockstep_ ? instant_ : Instant{clock_.now(), 0}; }
+
+bool Container::ending() const {
+  return finish_requested_.load(std::memory_order_relaxed) || (stop_ && stop_->load(std::memory_order_relaxed));
+}
+
+void Container::wake() {
+  const std::lock_guard lock(finish_mutex_);
+  finish_wanted_.notify_one();
 }
 
 Container::~Container() {
@@ -102,11 +193,12 @@ ComponentInstance* Container::find(const std::string& name) {
 }
 
 std::uint64_t Container::trace_hash() const {
-  std::vector<std::pair<unsigned, std::uint64_t>> traces;
+  std::map<unsigned, std::uint64_t> traces;
+  for (const auto& [index, departed] : departed_traces_) traces[index] = departed.second;
   for (const auto& instance : instances_)
-    for (const auto& output : instance->outputs()) traces.emplace_back(output->index(), output->trace());
-  if (lockstep_) std::ranges::copy(lockstep_->traces_elsewhere(), std::back_inserter(traces));
-  std::ranges::sort(traces);
+    for (const auto& output : instance->outputs()) traces[output->index()] = output->trace();
+  if (lockstep_)
+    for (const auto& [index, trace] : lockstep_->traces_elsewhere()) traces[index] = trace;
   Hash64 hash;
   for (const auto& [writer, trace] : traces) {
     hash.number(writer);
@@ -165,7 +257,12 @@ std::shared_ptr<spdlog::logger> Container::make_logger(const ComponentSpec& spec
 void Container::activate() {
   instant_ = {spec_.clock == ClockMode::lockstep ? Time{} : clock_.now(), 0};
   started_ = instant_.time;
-  for (const auto& instance : instances_) instance->activate(instant_);
+  for (const auto& instance : instances_) {
+    if (std::ranges::count(spec_.inactive, instance->name()) == 0)
+      instance->activate(instant_);
+    else
+      instance->stop("deactivated on request");
+  }
   publish_changed_statuses();
 }
 
@@ -184,6 +281,7 @@ void Container::end() {
 }
 
 RunReport Container::run(const RunControl& control) {
+  stop_ = control.stop;
   if (lockstep_) {
     if (const auto impossible = lockstep_->join(control)) return *impossible;
   }

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -27,6 +28,7 @@ class Dispatcher;
 class Lockstep;
 class LogSinks;
 class Members;
+class Operations;
 class StatusWriter;
 struct StopWish;
 class Watch;
@@ -93,6 +95,13 @@ class Container {
   const std::vector<std::unique_ptr<ComponentInstance>>& instances() const { return instances_; }
   ComponentInstance* find(const std::string& name);
 
+  /// What can be asked of the container while it runs.
+  Operations& operations() { return *operations_; }
+  /// The run is over, or will be as soon as nobody is in a handler.
+  bool ending() const;
+  /// Lets the thread that is in run() look at what was posted.
+  void wake();
+
   /// The chain of every traced writer, combined in writer order.
   std::uint64_t trace_hash() const;
 
@@ -111,10 +120,25 @@ class Container {
   std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
 
  private:
+  friend class Operations;
+
+  Slot slot_of(const ComponentSpec& spec) const;
+  /// Constructs a component with its endpoints and puts it into its place. Throws what its constructor throws.
+  ComponentInstance& add(const ComponentSpec& spec);
+  /// Takes a component that nobody is in out of everything, and destroys it.
+  void remove(ComponentInstance& instance);
+  /// From now on a dispatcher runs it, if dispatchers are what runs this container.
+  void attach(ComponentInstance& instance);
+  void detach(Dispatcher* dispatcher);
+  void tell_dispatchers_the_time();
+  /// The present, for what happens outside of any handler.
+  Instant present() const;
+
   /// Under the clocks wall and sim: until this container's ports are matched and all other containers say the same of
   /// theirs. A report, if the run ended before that.
   std::optional<RunReport> wait_for_peers(const RunControl& control);
   void hear_members();
+  void watch_anew();
   RunReport run_dispatchers(const RunControl& control);
   void start_dispatchers(Activity* activity);
   RunReport supervise(const RunControl& control);
@@ -123,7 +147,12 @@ class Container {
   std::optional<RunReport> lost_clock() const;
 
   ContainerSpec spec_;
+  ComponentRegistry& registry_;
   ContainerClock clock_;
+  std::vector<Slot> slots_;      ///< of the composition's components, wherever they run, and of what would follow
+  unsigned loaded_ever_ = 0;     ///< components that had a place behind the composition's
+  unsigned loaded_writers_ = 0;  ///< the writers of these
+  unsigned loaded_readers_ = 0;  ///< the readers of these
   Instant instant_;
   Time started_{};
   std::unique_ptr<dds::Domain> domain_;
@@ -133,9 +162,14 @@ class Container {
   std::unique_ptr<Members> members_;  ///< not under lockstep, nor in a composition of one container
   std::mutex writer_indices_mutex_;
   std::map<std::uint64_t, unsigned> writer_indices_;  ///< by Cyclone's instance handle; under the mutex
-  std::vector<std::unique_ptr<ComponentInstance>> instances_;
-  std::unique_ptr<Watch> watch_;  ///< not under lockstep
-  std::vector<std::unique_ptr<Dispatcher>> dispatchers_;
+  std::deque<std::uint64_t> departed_writers_;        ///< handles whose indices are still known, oldest first
+  std::map<unsigned, std::pair<std::uint64_t, std::uint64_t>> departed_traces_;  ///< writer -> sequence and trace
+  std::vector<std::unique_ptr<ComponentInstance>> instances_;  ///< by index; only the thread in run() changes it
+  std::unique_ptr<Watch> watch_;                               ///< not under lockstep
+  std::vector<std::unique_ptr<Dispatcher>> dispatchers_;       ///< the first is everybody's; others serve one component
+  Activity* activity_ = nullptr;  ///< of the run that is under way, if simulated time is run here
+  std::unique_ptr<Operations> operations_;
+  const std::atomic<bool>* stop_ = nullptr;  ///< of the run that is under way
   std::unique_ptr<Lockstep> lockstep_;
   std::unique_ptr<ClockReader> clock_reader_;  ///< clock sim, when another container runs the time
   std::atomic<bool> finish_requested_{false};

@@ -1,11 +1,11 @@
 // How a container runs under the clocks wall and sim: dispatchers in threads of their own, and the thread that called
 // run() watches over them and, in the container that runs simulated time, moves it on.
 #include <algorithm>
-#include <thread>
 
 #include "framework/runtime/clock_reader.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/dispatcher.hpp"
+#include "framework/runtime/operations.hpp"
 #include "framework/runtime/pace.hpp"
 
 namespace kervan::runtime {
@@ -35,14 +35,40 @@ RunReport time_limit() { return {.end = RunEnd::time_limit, .reason = "the time 
 
 void Container::start_dispatchers(Activity* activity) {
   dispatchers_.clear();
+  activity_ = activity;
   dispatchers_.push_back(std::make_unique<Dispatcher>(clock_, activity));
-  for (const auto& instance : instances_) {
-    Dispatcher* dispatcher = dispatchers_.front().get();
-    if (instance->wants_own_thread())
-      dispatcher = dispatchers_.emplace_back(std::make_unique<Dispatcher>(clock_, activity)).get();
-    instance->dispatcher = dispatcher;
-    dispatcher->enqueue(*instance);  // whatever came during activation
+  for (const auto& instance : instances_) attach(*instance);
+  dispatchers_.front()->start(spec_.threads);
+  tell_dispatchers_the_time();
+}
+
+/// From now on, whenever another container moves the time.
+void Container::tell_dispatchers_the_time() {
+  if (!clock_reader_ || dispatchers_.empty()) return;
+  clock_reader_->on_move([this] {
+    for (const auto& dispatcher : dispatchers_) dispatcher->time_moved();
+  });
+}
+
+void Container::attach(ComponentInstance& instance) {
+  if (dispatchers_.empty()) return;
+  Dispatcher* dispatcher = dispatchers_.front().get();
+  if (instance.wants_own_thread()) {
+    if (clock_reader_) clock_reader_->on_move({});
+    dispatcher = dispatchers_.emplace_back(std::make_unique<Dispatcher>(clock_, activity_)).get();
+    dispatcher->start(1);
+    tell_dispatchers_the_time();
   }
+  instance.dispatcher = dispatcher;
+  dispatcher->enqueue(instance);  // whatever came before
+}
+
+/// The component that it served, if it is a component's own, is gone.
+void Container::detach(Dispatcher* dispatcher) {
+  if (!dispatcher || dispatcher == dispatchers_.front().get()) return;
+  if (clock_reader_) clock_reader_->on_move({});
+  std::erase_if(dispatchers_, [&](const auto& other) { return other.get() == dispatcher; });
+  tell_dispatchers_the_time();
 }
 
 RunReport Container::run_dispatchers(const RunControl& control) {
@@ -52,19 +78,11 @@ RunReport Container::run_dispatchers(const RunControl& control) {
     finish_wanted_.notify_one();
   });
   start_dispatchers(runs_time ? &activity : nullptr);
-  if (clock_reader_)
-    clock_reader_->on_move([this] {
-      for (const auto& dispatcher : dispatchers_) dispatcher->time_moved();
-    });
-  std::vector<std::thread> threads;
-  for (unsigned i = 0; i < spec_.threads; ++i) threads.emplace_back(&Dispatcher::run, dispatchers_.front().get());
-  for (std::size_t i = 1; i < dispatchers_.size(); ++i) threads.emplace_back(&Dispatcher::run, dispatchers_[i].get());
-
   const RunReport report = runs_time ? run_simulated_time(control, activity) : supervise(control);
   if (clock_reader_) clock_reader_->on_move({});
   for (const auto& dispatcher : dispatchers_) dispatcher->stop();
-  for (std::thread& thread : threads) thread.join();
   for (const auto& instance : instances_) instance->dispatcher = nullptr;
+  activity_ = nullptr;
   instant_ = {clock_.now(), 0};
   return report;
 }
@@ -75,6 +93,12 @@ RunReport Container::supervise(const RunControl& control) {
   std::unique_lock lock(finish_mutex_);
   for (;;) {
     if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
+    if (operations_->pending()) {
+      lock.unlock();
+      operations_->run_posted();
+      lock.lock();
+      continue;
+    }
     // A signal handler sets the flag and can do no more, so it has to be looked at now and then.
     if (stop_wanted(control)) return interrupted();
     const Time now = clock_.now();
@@ -99,6 +123,12 @@ RunReport Container::run_simulated_time(const RunControl& control, const Activit
   std::unique_lock lock(finish_mutex_);
   for (;;) {
     if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
+    if (operations_->pending()) {
+      lock.unlock();
+      operations_->run_posted();
+      lock.lock();
+      continue;
+    }
     if (stop_wanted(control)) return interrupted();
     const Steady::time_point now = Steady::now();
     if (control.progress && now >= next_progress) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/instance.hpp"
@@ -15,6 +16,10 @@ constexpr int kIdle = 0;     // nothing to do
 constexpr int kQueued = 1;   // waits for a thread
 constexpr int kRunning = 2;  // a thread is in it
 constexpr int kAgain = 3;    // a thread is in it, and more has come since
+constexpr int kHeld = 4;     // no thread may enter it
+
+/// How often hold() asks whether to go on waiting.
+constexpr auto kHoldSlice = std::chrono::milliseconds(20);
 
 /// The dispatcher whose run() this thread is in: it looks at the queue again anyway and needs no waking.
 thread_local const Dispatcher* current = nullptr;
@@ -33,7 +38,8 @@ void Dispatcher::push(ComponentInstance& instance) noexcept {
 void Dispatcher::enqueue(ComponentInstance& instance) noexcept {
   int state = instance.schedule.load(std::memory_order_relaxed);
   for (;;) {
-    if (state == kQueued || state == kAgain) return;
+    // Whoever holds it queues it at the end, whether something came or not.
+    if (state == kQueued || state == kAgain || state == kHeld) return;
     const int wanted = state == kIdle ? kQueued : kAgain;
     if (instance.schedule.compare_exchange_weak(state, wanted, std::memory_order_acq_rel)) break;
   }
@@ -126,19 +132,83 @@ ComponentInstance* Dispatcher::next() {
 void Dispatcher::run_one(ComponentInstance& instance) {
   instance.schedule.store(kRunning, std::memory_order_release);
   const Time now = clock_.now();
+  instance.entered.store((clock_.stepped() ? dds::wall_now() : now).time_since_epoch().count(),
+                         std::memory_order_relaxed);
   instance.stage(now);  // first: what has arrived in time has not missed its deadline
   instance.run_due({now, 0});
   instance.run_inputs({now, 0});
   if (instance.take_status_changed()) instance.container().publish_status(instance);
   schedule(instance);
+  instance.entered.store(0, std::memory_order_relaxed);
   int state = kRunning;
-  if (instance.schedule.compare_exchange_strong(state, kIdle, std::memory_order_acq_rel)) {
+  // Sequentially consistent, as hold() is: either this thread sees that somebody waits, or that one sees it at rest.
+  if (instance.schedule.compare_exchange_strong(state, kIdle)) {
+    if (activity_) activity_->end();
+    if (wanted_.load() == &instance) tell_holder();
+    return;
+  }
+  std::unique_lock lock(mutex_);
+  if (wanted_.load() == &instance) {
+    instance.schedule.store(kHeld);  // what it left over is handled when it is released
+    at_rest_.notify_all();
+    lock.unlock();
     if (activity_) activity_->end();
     return;
   }
   instance.schedule.store(kQueued, std::memory_order_release);
-  const std::lock_guard lock(mutex_);
   push(instance);
+}
+
+void Dispatcher::tell_holder() {
+  const std::lock_guard lock(mutex_);
+  at_rest_.notify_all();
+}
+
+/// Takes the component out of the queue; false if it does not stand there.
+bool Dispatcher::unlink(ComponentInstance& instance) {
+  ComponentInstance* before = nullptr;
+  for (ComponentInstance* at = first_; at; before = std::exchange(at, at->next_queued)) {
+    if (at != &instance) continue;
+    (before ? before->next_queued : first_) = at->next_queued;
+    if (last_ == at) last_ = before;
+    return true;
+  }
+  return false;
+}
+
+bool Dispatcher::hold(ComponentInstance& instance, const std::function<bool()>& give_up) {
+  std::unique_lock lock(mutex_);
+  wanted_ = &instance;
+  bool held = false, unlinked = false;
+  for (;;) {
+    int state = kIdle;
+    held = instance.schedule.compare_exchange_strong(state, kHeld) || state == kHeld;
+    if (!held && state == kQueued && unlink(instance)) {
+      instance.schedule.store(kHeld);
+      held = unlinked = true;
+    }
+    if (held || give_up()) break;
+    at_rest_.wait_for(lock, kHoldSlice);
+  }
+  wanted_ = nullptr;
+  lock.unlock();
+  if (unlinked && activity_) activity_->end();
+  return held;
+}
+
+void Dispatcher::release(ComponentInstance& instance) {
+  instance.schedule.store(kIdle);
+  enqueue(instance);
+}
+
+void Dispatcher::forget(ComponentInstance& instance) {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(wakes_, [&](const Wake& wake) { return wake.instance == &instance; });
+  std::make_heap(wakes_.begin(), wakes_.end(), [](const Wake& a, const Wake& b) { return a.due > b.due; });
+}
+
+void Dispatcher::start(unsigned threads) {
+  for (unsigned i = 0; i < threads; ++i) threads_.emplace_back(&Dispatcher::run, this);
 }
 
 void Dispatcher::run() {
@@ -154,6 +224,8 @@ void Dispatcher::stop() {
     stopped_ = true;
   }
   work_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
+  threads_.clear();
 }
 
 }  // namespace kervan::runtime

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <functional>
 #include <mutex>
@@ -39,6 +40,7 @@ class Dispatcher {
   explicit Dispatcher(const ContainerClock& clock, Activity* activity = nullptr) : clock_(clock), activity_(activity) {}
   Dispatcher(const Dispatcher&) = delete;
   Dispatcher& operator=(const Dispatcher&) = delete;
+  ~Dispatcher() { stop(); }
 
   /// The component has something to do. From any thread, also under Cyclone's locks.
   void enqueue(ComponentInstance& instance) noexcept;
@@ -50,10 +52,18 @@ class Dispatcher {
   /// When the next component is due; Time::max() if none is.
   Time next_wake();
 
-  /// Runs components in the calling thread until stop(). Several threads may be in here; each component runs in one of
-  /// them at a time.
-  void run();
+  /// Runs components in `threads` threads of its own; each component runs in one of them at a time.
+  void start(unsigned threads);
+  /// Returns when no thread is in a component any more.
   void stop();
+
+  /// Waits until no thread is in the component, and keeps it so until release(). `give_up` is asked now and then; true
+  /// ends the waiting, and the component is not held. From a thread that is none of the dispatcher's, one at a time.
+  bool hold(ComponentInstance& instance, const std::function<bool()>& give_up);
+  /// What came meanwhile is handled now.
+  void release(ComponentInstance& instance);
+  /// Forgets a component that is held, for good.
+  void forget(ComponentInstance& instance);
 
  private:
   struct Wake {
@@ -61,7 +71,10 @@ class Dispatcher {
     ComponentInstance* instance;
   };
 
+  void run();
   ComponentInstance* next();
+  bool unlink(ComponentInstance& instance);
+  void tell_holder();
   void push(ComponentInstance& instance) noexcept;
   void release_due(Time now) noexcept;
   void run_one(ComponentInstance& instance);
@@ -75,6 +88,9 @@ class Dispatcher {
   std::vector<Wake> wakes_;  ///< a heap, earliest on top; entries whose time was changed since are skipped
   int waiting_ = 0;
   bool stopped_ = false;
+  std::atomic<ComponentInstance*> wanted_{nullptr};  ///< whom hold() waits for
+  std::condition_variable at_rest_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace kervan::runtime

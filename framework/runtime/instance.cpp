@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "framework/component/error.hpp"
+#include "framework/dds/wall_clock.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/dispatcher.hpp"
@@ -26,8 +27,8 @@ PortBinding binding_of(const ComponentSpec& spec, const PortInfo& port) {
 }  // namespace
 
 ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type,
-                                     unsigned index, FirstIndices first)
-    : container_(container), type_(type.type), index_(index), log_(container.make_logger(spec)) {
+                                     const Slot& slot)
+    : container_(container), type_(type.type), index_(slot.index), log_(container.make_logger(spec)) {
   ComponentSetup setup;
   setup.name = spec.name;
   setup.parameters = &spec.parameters;
@@ -38,12 +39,13 @@ ComponentInstance::ComponentInstance(Container& container, const ComponentSpec& 
   }
   const ClockMode clock = container.spec().clock;
   for (OutputBase* output : component_->outputs_)
-    outputs_.push_back(std::make_unique<OutputPort>(*output, binding_of(spec, output->info()), *this,
-                                                    container.domain(), clock,
-                                                    first.writer + static_cast<unsigned>(outputs_.size())));
+    outputs_.push_back(
+        std::make_unique<OutputPort>(*output, binding_of(spec, output->info()), *this, container.domain(), clock,
+                                     slot.first_writer + slot.stride * static_cast<unsigned>(outputs_.size())));
   for (InputBase* input : component_->inputs_)
-    inputs_.push_back(std::make_unique<InputPort>(*input, binding_of(spec, input->info()), *this, container.domain(),
-                                                  clock, first.reader + static_cast<unsigned>(inputs_.size())));
+    inputs_.push_back(
+        std::make_unique<InputPort>(*input, binding_of(spec, input->info()), *this, container.domain(), clock,
+                                    slot.first_reader + slot.stride * static_cast<unsigned>(inputs_.size())));
   component_->instance_ = this;
 }
 
@@ -88,7 +90,9 @@ void ComponentInstance::guarded(const char* where, Instant now, Code&& code) {
 }
 
 void ComponentInstance::activate(Instant now) {
+  timers_.clear();
   for (const Timer* timer : component_->timers_) timers_.push_back({timer, now.time});
+  for (const auto& input : inputs_) input->cache().restart_deadlines(now.time);
   set_state(ComponentState::active, {});
   guarded("on_activate", now, [&] { component_->on_activate(now.time); });
 }
@@ -96,6 +100,28 @@ void ComponentInstance::activate(Instant now) {
 void ComponentInstance::deactivate(Instant now) {
   if (!running()) return;
   guarded("on_deactivate", now, [&] { component_->on_deactivate(now.time); });
+}
+
+Duration ComponentInstance::time_in_handler() const {
+  const std::int64_t since = entered.load(std::memory_order_relaxed);
+  return since == 0 ? Duration::zero() : dds::wall_now().time_since_epoch() - Duration(since);
+}
+
+void ComponentInstance::stop(std::string why) {
+  if (state() != ComponentState::failed) set_state(ComponentState::stopped, std::move(why));
+}
+
+std::optional<std::string> ComponentInstance::change_parameters(const ValueMap& changes, Instant now) {
+  std::optional<std::string> refused;
+  guarded("on_parameters_changed", now, [&] {
+    try {
+      component_->change_parameters(changes);
+    } catch (const ParameterError& error) {
+      refused = error.what();
+    }
+  });
+  if (!refused && state() == ComponentState::failed) return "it failed: " + reason();
+  return refused;
 }
 
 void ComponentInstance::shutdown(Instant now) {

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,17 +16,19 @@ namespace kervan::runtime {
 class Container;
 class Dispatcher;
 
-/// Where a component's endpoints begin in the composition's counting of all writers and of all readers.
-struct FirstIndices {
-  unsigned writer = 0;
-  unsigned reader = 0;
+/// A component's place in its composition, and where its endpoints stand in the counting of all writers and of all
+/// readers: at first_writer, first_writer + stride, …
+struct Slot {
+  unsigned index = 0;
+  unsigned first_writer = 0;
+  unsigned first_reader = 0;
+  unsigned stride = 1;
 };
 
 class ComponentInstance {
  public:
   /// Constructs the component, then its endpoints. Throws what the component's constructor throws, or DdsError.
-  ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type, unsigned index,
-                    FirstIndices first);
+  ComponentInstance(Container& container, const ComponentSpec& spec, const ComponentClass& type, const Slot& slot);
   ~ComponentInstance();
 
   const std::string& name() const { return component_->name_; }
@@ -34,6 +37,7 @@ class ComponentInstance {
   unsigned index() const { return index_; }
   ComponentState state() const { return component_->state_; }
   const std::string& reason() const { return component_->reason_; }
+  bool running() const;  ///< active or degraded
   bool wants_own_thread() const { return component_->own_thread_; }
   const std::vector<std::unique_ptr<InputPort>>& inputs() const { return inputs_; }
   const std::vector<std::unique_ptr<OutputPort>>& outputs() const { return outputs_; }
@@ -41,8 +45,18 @@ class ComponentInstance {
   spdlog::logger& log() const { return *log_; }
   const Instant& instant() const { return instant_; }
 
+  /// How long a thread has been in it; 0 if none is. From any thread.
+  Duration time_in_handler() const;
+
   void activate(Instant now);
+  /// Last words; it runs on until shutdown() or stop().
   void deactivate(Instant now);
+  /// Handles nothing any more until it is activated again.
+  void stop(std::string why);
+  /// Why the change was refused; nothing if all of it was made.
+  std::optional<std::string> change_parameters(const ValueMap& changes, Instant now);
+  const std::vector<ParameterInfo>& schema() const { return component_->schema_; }
+  const ValueMap& values() const { return component_->values_; }  ///< those that were given, at first or later
   void shutdown(Instant now);
 
   /// The earliest timer or deadline; Time::max() if there is none or the component no longer runs.
@@ -63,6 +77,7 @@ class ComponentInstance {
   ComponentInstance* next_queued = nullptr;
   std::atomic<int> schedule{0};
   Time scheduled_for = Time::max();
+  std::atomic<std::int64_t> entered{0};  ///< on the wall clock, since when a thread is in it; 0: none is
 
  private:
   friend class ::kervan::Component;
@@ -71,7 +86,6 @@ class ComponentInstance {
   template <class Code>
   void guarded(const char* where, Instant now, Code&& code);
   void set_state(ComponentState state, std::string reason);
-  bool running() const;
 
   struct TimerState {
     const Timer* timer;

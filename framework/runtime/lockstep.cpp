@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/runtime/operations.hpp"
 #include "framework/runtime/workers.hpp"
 
 namespace kervan::runtime {
@@ -45,6 +46,15 @@ void Lockstep::arrived(ComponentInstance& instance) noexcept {
   ready_spin_.clear(std::memory_order_release);
 }
 
+void Lockstep::forget_departed() {
+  while (ready_spin_.test_and_set(std::memory_order_acquire)) {
+  }
+  std::erase_if(ready_, [&](const ComponentInstance* ready) {
+    return std::ranges::none_of(container_.instances(), [&](const auto& instance) { return instance.get() == ready; });
+  });
+  ready_spin_.clear(std::memory_order_release);
+}
+
 Time Lockstep::next_due() const {
   Time due = Time::max();
   for (const auto& instance : container_.instances()) due = std::min(due, instance->next_due());
@@ -59,9 +69,10 @@ void Lockstep::for_each_parallel(const std::vector<ComponentInstance*>& instance
     for (ComponentInstance* instance : instances) work(*instance);
 }
 
-/// Cycle 0: deadlines and timers.
+/// Cycle 0: what was asked of the container, then deadlines and timers.
 void Lockstep::run_due() {
   instant_.cycle = 0;
+  container_.operations().run_posted();
   batch_.clear();
   for (const auto& instance : container_.instances())
     if (instance->next_due() <= instant_.time) batch_.push_back(instance.get());
@@ -84,7 +95,9 @@ void Lockstep::run_inputs() {
   for (ComponentInstance* instance : batch_) {
     instance->schedule.store(0, std::memory_order_release);
     instance->stage(instant_.time);
-    if (instant_.cycle + kLongestLoop > kMaxCycles) looping_[instance->index()] = true;
+    if (instant_.cycle + kLongestLoop <= kMaxCycles) continue;
+    if (instance->index() >= looping_.size()) looping_.resize(instance->index() + 1, false);
+    looping_[instance->index()] = true;
   }
   for_each_parallel(batch_, [this](ComponentInstance& instance) { instance.run_inputs(instant_); });
 }
@@ -118,8 +131,10 @@ std::string Lockstep::livelock() const {
   std::string text = "components publish to each other for ever at one time";
   const char* separator = ": ";
   for (const unsigned component : loop) {
-    if (component >= container_.spec().components.size()) continue;
-    text += separator + container_.spec().components[component].name;
+    const auto& known = container_.spec().components;
+    const auto loaded = std::ranges::find(container_.instances(), component, &ComponentInstance::index);
+    if (component >= known.size() && loaded == container_.instances().end()) continue;
+    text += separator + (component < known.size() ? known[component].name : (*loaded)->name());
     separator = ", ";
   }
   return text;

@@ -28,6 +28,8 @@ class Lockstep {
 
   /// A sample has arrived at a port of the component. From any thread, also under Cyclone's locks.
   void arrived(ComponentInstance& instance) noexcept;
+  /// Takes out of the next cycle who is no longer there, or never came to be.
+  void forget_departed();
 
   /// Once all endpoints of the container exist: makes what keeps it in step with the composition's other containers, if
   /// there are any. Throws ConfigError or DdsError.

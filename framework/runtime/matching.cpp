@@ -8,9 +8,10 @@ namespace kervan::runtime {
 
 Matching::Matching(const Container& container) {
   const ContainerSpec& spec = container.spec();
-  for (const ComponentSpec& component : spec.components) {
-    if (is_local(spec, component)) {
-      const auto instance = std::ranges::find(container.instances(), component.name, &ComponentInstance::name);
+  for (unsigned index = 0; index < spec.components.size(); ++index) {
+    const ComponentSpec& component = spec.components[index];
+    const auto instance = std::ranges::find(container.instances(), index, &ComponentInstance::index);
+    if (instance != container.instances().end()) {
       for (const auto& port : (*instance)->outputs())
         writers_.push_back({.name = component.name + "." + port->name(),
                             .topic = port->binding().topic,
@@ -29,11 +30,13 @@ Matching::Matching(const Container& container) {
           .push_back({.name = component.name + "." + port.port,
                       .topic = port.topic,
                       .container = component.container,
-                      .optional = port.optional});
+                      .optional = port.optional,
+                      .absent = is_local(spec, component)});
   }
   for (unsigned reader = 0; reader < readers_.size(); ++reader)
     for (unsigned writer = 0; writer < writers_.size(); ++writer)
-      if (readers_[reader].topic == writers_[writer].topic && !readers_[reader].input != !writers_[writer].output)
+      if (readers_[reader].topic == writers_[writer].topic && !readers_[reader].input != !writers_[writer].output &&
+          !readers_[reader].absent && !writers_[writer].absent)
         pairs_.push_back({.writer = writer, .reader = reader});
 }
 

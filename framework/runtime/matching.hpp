@@ -17,6 +17,7 @@ struct CompositionEndpoint {
   std::string topic;             ///< "/r1/odom"
   std::string container;         ///< where it runs
   bool optional = false;         ///< an input that may stay without a writer
+  bool absent = false;           ///< of a component that was unloaded here
   InputPort* input = nullptr;    ///< if it is a reader of this container
   OutputPort* output = nullptr;  ///< if it is a writer of this container
 };

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "framework/dds/cdr.hpp"
 #include "framework/dds/hash.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/countdown.hpp"
@@ -267,12 +268,35 @@ void OutputPort::publish(dds::SampleBlock* block, Operation operation) {
     writer_.publish_assertion(block, stamp);
     return;
   }
+  if (output_.type().keyed) {
+    output_.type().key_bytes(dds::value_of(block), key_);
+    if (operation == Operation::dispose)
+      alive_.erase(key_);
+    else
+      alive_.insert(key_);
+  }
   if (keeps_last_) {
     if (last_) dds::release(last_);
     last_ = operation == Operation::write ? block : nullptr;
     if (last_) dds::retain(last_);
   }
   writer_.publish(block, stamp, operation == Operation::dispose);
+}
+
+void OutputPort::dispose_all() {
+  for (const std::string& key : std::set<std::string>(alive_)) {
+    dds::SampleBlock* block = loan(true);
+    cdr::Reader reader(key.data(), key.size(), cdr::Endian::big);
+    if (output_.type().read_key(dds::mutable_value_of(block), reader))
+      publish(block, Operation::dispose);
+    else
+      dds::release(block);
+  }
+}
+
+void OutputPort::continue_trace(std::uint64_t sequence, std::uint64_t trace) {
+  sequence_ = sequence;
+  trace_ = trace;
 }
 
 }  // namespace kervan::runtime

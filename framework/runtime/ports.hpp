@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -131,6 +132,10 @@ class OutputPort final : public dds::StatusSink {
   void publish(dds::SampleBlock* block, Operation operation);
   /// Under a logical clock, where DDS knows no lease, it travels as a repetition of the last sample.
   void assert_alive();
+  /// Keyed topics: disposes of every living instance that this port has published, in the order of their keys.
+  void dispose_all();
+  /// The port takes up where an earlier one with the same index ended.
+  void continue_trace(std::uint64_t sequence, std::uint64_t trace);
 
   void on_status() noexcept override;
 
@@ -144,6 +149,8 @@ class OutputPort final : public dds::StatusSink {
   std::uint64_t trace_ = 0;
   dds::SampleBlock* last_ = nullptr;  ///< published last, if an assertion has to repeat it
   bool keeps_last_;
+  std::string key_;              ///< scratch of publish()
+  std::set<std::string> alive_;  ///< keyed topics: keys of the instances that were published and not disposed of
   PortHealth health_;
   dds::Writer writer_;  ///< last: it calls into the members above
 };

@@ -210,6 +210,11 @@ Time SampleCache::next_deadline() const {
   return next;
 }
 
+void SampleCache::restart_deadlines(Time now) {
+  for (Instance& instance : instances_)
+    if (instance.due != Time::max()) instance.due = later(now, profile_.deadline);
+}
+
 bool SampleCache::check_deadlines(Time now) {
   bool missed = false;
   for (Lease& lease : leases_) {

@@ -71,6 +71,8 @@ class SampleCache {
 
   /// The earliest time at which an instance misses the deadline or a lease ends; Time::max() if there is none.
   Time next_deadline() const;
+  /// The deadlines of all instances begin anew: nobody watched them until now.
+  void restart_deadlines(Time now);
   /// Counts the deadlines missed and leases ended at or before `now`; true if there was one.
   bool check_deadlines(Time now);
 

@@ -29,6 +29,14 @@ StatusWriter::StatusWriter(dds::Domain& domain)
               dds::CyclonePart::whole_profile, 0, dds::kInternal) {}
 
 void StatusWriter::publish(const ComponentInstance& instance, const std::string& container, Time now) {
+  publish(instance, container, now, false);
+}
+
+void StatusWriter::remove(const ComponentInstance& instance, const std::string& container, Time now) {
+  publish(instance, container, now, true);
+}
+
+void StatusWriter::publish(const ComponentInstance& instance, const std::string& container, Time now, bool dispose) {
   const std::lock_guard lock(mutex_);
   dds::SampleBlock* block = writer_.loan(true);
   auto& message = *static_cast<kervan_msgs::msg::ComponentStatus*>(dds::mutable_value_of(block));
@@ -50,7 +58,7 @@ void StatusWriter::publish(const ComponentInstance& instance, const std::string&
     port.not_owner = counters.not_owner;
     port.deadline_missed = counters.deadline_missed;
   }
-  writer_.publish(block, now, false);
+  writer_.publish(block, now, dispose);
 }
 
 }  // namespace kervan::runtime

@@ -15,8 +15,12 @@ class StatusWriter {
   explicit StatusWriter(dds::Domain& domain);
 
   void publish(const ComponentInstance& instance, const std::string& container, Time now);
+  /// The component is no longer here: its last status, as one that disposes of the instance.
+  void remove(const ComponentInstance& instance, const std::string& container, Time now);
 
  private:
+  void publish(const ComponentInstance& instance, const std::string& container, Time now, bool dispose);
+
   std::mutex mutex_;
   dds::Writer writer_;
 };

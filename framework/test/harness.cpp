@@ -6,6 +6,7 @@
 
 #include "framework/dds/type_support.hpp"
 #include "framework/runtime/container.hpp"
+#include "framework/runtime/operations.hpp"
 
 namespace kervan::test {
 
@@ -117,6 +118,11 @@ void Harness::feed(const std::string& input, const TypeSupport& type, const void
   dds::SampleBlock* block = writer->second->loan(false);
   type.copy(dds::mutable_value_of(block), message);
   writer->second->publish(block, now(), false);
+}
+
+void Harness::change_parameters(const ValueMap& changes) {
+  const auto outcome = impl_->container->operations().change_parameters(impl_->subject->name(), changes);
+  if (!outcome.accepted) throw std::invalid_argument(outcome.reason);
 }
 
 void Harness::advance(Duration duration) { impl_->container->advance(now() + duration); }

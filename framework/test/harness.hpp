@@ -1,5 +1,5 @@
-/// Tests a component by itself: feed its inputs, advance logical time, read its outputs and its state. It runs in lockstep
-/// in a domain without a network, so nothing sleeps, nothing is flaky, and the same test always does the same.
+/// Tests a component by itself: feed its inputs, advance logical time, read its outputs and its state. It runs in
+/// lockstep in a domain without a network, so nothing sleeps, nothing is flaky, and the same test always does the same.
 ///
 ///   kervan::test::Harness harness("control/potential_field", {{"law", "potential_gecui"}});
 ///   harness.feed("odom", odometry);
@@ -20,7 +20,8 @@ namespace kervan::test {
 class Harness {
  public:
   /// The component type called `type`, found as a container finds it (see ComponentRegistry). Parameters are in SI
-  /// units: {{"period", 0.1}}. Throws what the component's constructor throws, std::invalid_argument for an unknown type.
+  /// units: {{"period", 0.1}}. Throws what the component's constructor throws, std::invalid_argument for an unknown
+  /// type.
   explicit Harness(const std::string& type, const ValueMap& parameters = {});
 
   /// A component of the test program itself; see define().
@@ -36,6 +37,10 @@ class Harness {
   void feed(const std::string& input, const T& message) {
     feed(input, shared_type_support<T>(), &message);
   }
+
+  /// Changes live parameters, as a request to its container does. Throws std::invalid_argument with the reason of a
+  /// refusal.
+  void change_parameters(const ValueMap& changes);
 
   /// Handles everything at the present time, then every timer and sample up to `duration` later.
   void advance(Duration duration);

@@ -20,7 +20,7 @@ struct RelayParams {
 
 /// One link of a chain: passes every message on.
 class Relay final : public Component {
-  RelayParams params_ = parameters<RelayParams>();
+  const RelayParams& params_ = parameters<RelayParams>();
   Input<Payload> in_{this, "in", qos::state.optional(), &Relay::on_message, "From the link before."};
   Output<Payload> out_{this, "out", qos::state, "To the link after."};
   std::unique_ptr<Timer> tick_ =

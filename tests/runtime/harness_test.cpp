@@ -6,9 +6,9 @@
 #include <stdexcept>
 
 #include "framework/kervan.hpp"
+#include "geometry_msgs/msg/TwistStamped.hpp"
 #include "kervan_msgs/msg/MotionRequest.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
-#include "geometry_msgs/msg/TwistStamped.hpp"
 
 namespace {
 
@@ -26,7 +26,7 @@ struct Params {
 
 /// Drives back to x = 0; throws beyond 100 m.
 class Homing final : public kervan::Component {
-  Params params_ = parameters<Params>();
+  const Params& params_ = parameters<Params>();
   kervan::Input<Odometry> odom_{this, "odom", kervan::qos::sensor.max_age(300ms), "Where the robot is."};
   kervan::Input<TwistStamped> echo_{this, "echo", kervan::qos::event.optional(), &Homing::on_echo, "Repeated at once."};
   kervan::Output<TwistStamped> cmd_vel_{this, "cmd_vel", kervan::qos::command, "Speed wanted."};

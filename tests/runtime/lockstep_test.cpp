@@ -29,7 +29,7 @@ struct NodeParams {
 
 /// Mixes what it hears into its state and passes it on for a while: any change of order changes everything after it.
 class Node final : public kervan::Component {
-  NodeParams params_ = parameters<NodeParams>();
+  const NodeParams& params_ = parameters<NodeParams>();
   kervan::Input<LaserScan> in_{this, "in", kervan::qos::event, &Node::on_message, "The ring."};
   kervan::Input<MotionRequest> all_{this, "all", kervan::qos::state.optional(), &Node::on_request, "From everybody."};
   kervan::Output<LaserScan> out_{this, "out", kervan::qos::event, "The ring."};
@@ -150,7 +150,8 @@ class Mapper final : public kervan::Component {
 };
 
 class MapReader final : public kervan::Component {
-  kervan::Input<nav_msgs::msg::OccupancyGrid> map_{this, "map", kervan::qos::latched, &MapReader::on_map, "A large map."};
+  kervan::Input<nav_msgs::msg::OccupancyGrid> map_{this, "map", kervan::qos::latched, &MapReader::on_map,
+                                                   "A large map."};
   void on_map(const nav_msgs::msg::OccupancyGrid& map, kervan::Time) {
     EXPECT_EQ(&map, Mapper::last_published);
     ++seen;
@@ -171,8 +172,14 @@ TEST(Lockstep, AReaderGetsTheVeryObjectThatWasPublishedAndBlocksAreReused) {
   spec.clock = kervan::runtime::ClockMode::lockstep;
   spec.domain = {.id = 203, .network = false};
   spec.log_to_console = false;
-  spec.components.push_back({.name = "mapper", .type = mapper.type,});
-  spec.components.push_back({.name = "reader", .type = reader.type,});
+  spec.components.push_back({
+      .name = "mapper",
+      .type = mapper.type,
+  });
+  spec.components.push_back({
+      .name = "reader",
+      .type = reader.type,
+  });
   const auto before = kervan::dds::data_path_statistics();
   kervan::runtime::Container container(spec, registry);
   const auto report = container.run({});

@@ -18,7 +18,7 @@ struct CommandRecorderParams {
 
 /// Writes down what the drive is told, as a drive would hear it, so that a test can see the last word of a run.
 class CommandRecorder final : public Component {
-  CommandRecorderParams params_ = parameters<CommandRecorderParams>();
+  const CommandRecorderParams& params_ = parameters<CommandRecorderParams>();
   Input<geometry_msgs::msg::TwistStamped> command_{this, "command", qos::command, &CommandRecorder::on_command,
                                                    "Speed for the drive."};
   std::ofstream file_;

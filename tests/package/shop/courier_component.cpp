@@ -24,7 +24,7 @@ struct CourierParams {
 
 /// Reports how far the parcel on a robot has been carried. Degraded while nobody says where the robot is.
 class Courier final : public kervan::Component {
-  CourierParams params_ = parameters<CourierParams>();
+  const CourierParams& params_ = parameters<CourierParams>();
   kervan::Input<Odometry> odom_{this, "odom", kervan::qos::sensor, &Courier::on_odom, "Where the robot is."};
   kervan::Output<Parcel> parcel_{this, "parcel", kervan::qos::latched, "The parcel's way so far."};
   kervan::Timer tick_{this, params_.period, &Courier::on_tick};

@@ -28,6 +28,27 @@ DriveGuard driving(const Twist2& speed, Time start) {
   return guard;
 }
 
+TEST(DriveGuardLimits, ChangeWhileItDrivesAndAreReachedAtTheAccelerationsTheyHold) {
+  DriveGuardParams params;
+  params.acceleration = params.deceleration = 1.0;
+  DriveGuard guard(params);
+  Time now{};
+  const auto drive = [&](int steps) {
+    for (int i = 0; i < steps; ++i) {
+      guard.command(now, {0.8, 0.0});
+      guard.step(now);
+      now += params.period;
+    }
+    return guard.output().linear;
+  };
+  EXPECT_NEAR(drive(20), 0.8, 1e-9);
+  params.max_speed = 0.3;
+  guard.set_params(params);
+  guard.step(now);  // the last command is limited anew, without a next one
+  EXPECT_NEAR(guard.output().linear, 0.75, 1e-9);
+  EXPECT_NEAR(drive(20), 0.3, 1e-9);
+}
+
 TEST(DriveGuard, StandsUntilTheFirstCommand) {
   DriveGuard guard({});
   EXPECT_EQ(guard.step(at(0s)), Twist2{});

@@ -39,6 +39,15 @@ TEST(RouteFollower, ReachesTheLastWaypointAtThreeCentimetresOnly) {
   EXPECT_EQ(follower.waypoint(), Vector2(4, 0));
 }
 
+TEST(RouteFollower, PassesByTheDistancesOfTheMomentWhenTheyChange) {
+  auto follower = on_route({{2, 0}, {4, 0}});
+  EXPECT_FALSE(follower.advance({1.0, 0}));
+  follower.set_params({.pass_within = 1.0, .arrive_within = 0.5});
+  EXPECT_TRUE(follower.advance({1.0, 0}));
+  EXPECT_TRUE(follower.advance({3.5, 0}));
+  EXPECT_TRUE(follower.arrived());
+}
+
 TEST(RouteFollower, PassesSeveralWaypointsThatLieClose) {
   auto follower = on_route({{0, 0}, {0.3, 0}, {0.4, 0.2}, {5, 0}});
   EXPECT_TRUE(follower.advance({0, 0}));
