@@ -2,6 +2,7 @@
 #include "framework/runtime/operations.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "builtin_interfaces/msg/Time.hpp"
 #include "framework/kervan.hpp"
@@ -245,7 +246,7 @@ TEST(LockstepOperationsRestart, AContainerComesBackWithWhatWasLoadedUnloadedAndS
 TEST(LockstepOperationsPeers, RefuseToLoadAndUnload) {
   kervan::ComponentRegistry registry = operations_registry();
   ContainerSpec spec = lockstep_spec();
-  spec.domain.id = 234;
+  spec.domain = {.id = 234, .tag = "operations-" + std::to_string(getpid())};
   spec.members = {"main", "other"};
   Container container(spec, registry);
   EXPECT_EQ(
