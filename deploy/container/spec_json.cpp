@@ -228,7 +228,8 @@ std::string read_file(const std::filesystem::path& file) {
 }  // namespace
 
 std::string to_json(const ContainerSpec& spec) {
-  const auto& [name, members, clock, pace, threads, domain, components, run_folder, log_to_console, publish_log] = spec;
+  const auto& [name, members, clock, pace, threads, domain, components, loaded, absent, inactive, run_folder,
+               log_to_console, publish_log] = spec;
   ordered_json object = {{"name", name},
                          {"members", members},
                          {"clock", to_text(clock)},
@@ -238,8 +239,12 @@ std::string to_json(const ContainerSpec& spec) {
                          {"run_folder", run_folder.string()},
                          {"log_to_console", log_to_console},
                          {"publish_log", publish_log},
-                         {"components", ordered_json::array()}};
+                         {"components", ordered_json::array()},
+                         {"loaded", ordered_json::array()},
+                         {"absent", absent},
+                         {"inactive", inactive}};
   for (const ComponentSpec& component : components) object["components"].push_back(component_json(component));
+  for (const ComponentSpec& component : loaded) object["loaded"].push_back(component_json(component));
   try {
     return object.dump(1) + "\n";
   } catch (const json::type_error&) {
@@ -251,7 +256,7 @@ ContainerSpec spec_from_json(const std::string& text, const std::string& shown_a
   const json object = parse_json(text, shown_as);
   const JsonReader reader(object, shown_as);
   reader.only_keys({"name", "members", "clock", "pace", "threads", "domain", "run_folder", "log_to_console",
-                    "publish_log", "components"});
+                    "publish_log", "components", "loaded", "absent", "inactive"});
   ContainerSpec spec;
   spec.name = reader.at("name").text();
   reader.at("members").each([&](const JsonReader& member) { spec.members.push_back(member.text()); });
@@ -263,6 +268,9 @@ ContainerSpec spec_from_json(const std::string& text, const std::string& shown_a
   spec.log_to_console = reader.at("log_to_console").boolean();
   spec.publish_log = reader.at("publish_log").boolean();
   reader.at("components").each([&](const JsonReader& one) { spec.components.push_back(component_of(one)); });
+  reader.at("loaded").each([&](const JsonReader& one) { spec.loaded.push_back(component_of(one)); });
+  reader.at("absent").each([&](const JsonReader& one) { spec.absent.push_back(one.text()); });
+  reader.at("inactive").each([&](const JsonReader& one) { spec.inactive.push_back(one.text()); });
   return spec;
 }
 

@@ -246,7 +246,7 @@ TEST(LockstepOperationsRestart, AContainerComesBackWithWhatWasLoadedUnloadedAndS
 TEST(LockstepOperationsPeers, RefuseToLoadAndUnload) {
   kervan::ComponentRegistry registry = operations_registry();
   ContainerSpec spec = lockstep_spec();
-  spec.domain = {.id = 234, .tag = "operations-" + std::to_string(getpid())};
+  spec.domain = {.id = 34, .tag = "operations-" + std::to_string(getpid())};
   spec.members = {"main", "other"};
   Container container(spec, registry);
   EXPECT_EQ(
