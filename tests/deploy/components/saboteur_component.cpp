@@ -23,7 +23,8 @@ struct SaboteurParams {
   void describe(Visitor& v) {
     v(where, "where",
       {.choices = {"nowhere", "constructor", "activate", "timer", "input", "deactivate"}, .help = "In which code."});
-    v(how, "how", {.choices = {"segv", "abort", "overflow", "refuse", "hang", "exit"}, .help = "What it does there."});
+    v(how, "how",
+      {.choices = {"segv", "null", "abort", "overflow", "refuse", "hang", "exit"}, .help = "What it does there."});
     v(after, "after", {.min = 0.0, .max = 100.0, .help = "Not before this time after the activation."});
   }
 };
@@ -43,6 +44,10 @@ class Saboteur final : public Component {
   void strike(const std::string& where) {
     if (params_.where != where) return;
     if (params_.how == "segv") ::raise(SIGSEGV);
+    if (params_.how == "null") {
+      int* volatile nowhere = reinterpret_cast<int*>(0x10);
+      *nowhere = 1;
+    }
     if (params_.how == "abort") std::abort();
     if (params_.how == "overflow") overflow(0);
     if (params_.how == "refuse") throw ParameterError("how", "it is refused here and nowhere else");
