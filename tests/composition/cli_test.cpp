@@ -61,6 +61,29 @@ TEST_F(Program, SaysWhereAValueOfAProfileComesFrom) {
       << result.output;
 }
 
+TEST_F(Program, ShowsWhoMeetsWhomAndWhoIsAlone) {
+  const Result result = kervan("check lab");
+  for (const char* row :
+       {"topic            type                              writer                  reader ",
+        "/r1/sonar        kervan_msgs::msg::SonarArray      world.r1/sonar          r1/control.sonar ",
+        "/tf              tf2_msgs::msg::TFMessage          world./tf               -  "})
+    EXPECT_NE(result.output.find(row), std::string::npos) << row << "\n" << result.output;
+  EXPECT_NE(kervan("check lab --json", without_errors)
+                .output.find(R"({"topic":"/tf","type":"tf2_msgs::msg::TFMessage","writer":"world./tf","reader":null,)"
+                             R"("profile":"event","verdict":"nobody reads it"})"),
+            std::string::npos);
+}
+
+TEST_F(Program, ShowsWhereEveryComponentIsPlaced) {
+  const Result result = kervan("check lab --place drive=r1/control,r1/guard");
+  EXPECT_EQ(result.code, 0);
+  EXPECT_NE(result.output.find("container  host  components\n"
+                               "all        -     world, r1/planner, r1/follower, report, mission\n"
+                               "drive      -     r1/control, r1/guard\n"),
+            std::string::npos)
+      << result.output;
+}
+
 TEST_F(Program, DescribesEveryComponent) {
   const Result all = kervan("describe");
   EXPECT_EQ(all.code, 0);
@@ -81,6 +104,14 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
   expect_refused("rnu lab", "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe");
   expect_refused("run lba", "there is no composition 'lba'; did you mean 'lab'? there are: lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
+  expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
+  expect_refused("run lab --place left=wrold",
+                 "--place left=wrold: there is no component 'wrold'; did you mean 'world'? there are: mission, r1, "
+                 "r1/control, r1/follower, r1/guard, r1/planner, report, world");
+  expect_refused(
+      "run lab --place left=world --place right=world",
+      "--place right=world: the component 'world' is already in the container 'left' (--place left=world); it "
+      "can be in one only");
   expect_refused("run lab --for 60", "--for 60: 60 has no unit; write e.g. 60 s");
   expect_refused("run lab --arg seed=-1", "--arg seed=-1: -1 is out of range; allowed: 0 .. 4294967295");
   expect_refused("run lab --arg drift=1", "--arg drift=1: 1 is out of range; allowed: 0 .. 0.5");

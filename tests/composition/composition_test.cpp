@@ -1,6 +1,7 @@
 // What a good composition becomes: arguments, templates, remaps, quality of service, containers.
 #include <gtest/gtest.h>
 
+#include "deploy/composition/hosts.hpp"
 #include "deploy/composition/load.hpp"
 #include "tests/composition/fake_components.hpp"
 
@@ -148,6 +149,24 @@ TEST(Topics, ComeFromTheScopeOfTheComponent) {
   EXPECT_EQ(topic(composition, "world", "/clock"), "/clock");
 }
 
+TEST(Topics, HaveTheRobotsPrefixUnlessAnAbsoluteNameIsAskedFor) {
+  const auto composition = resolved(R"(kervan: 1
+name: c
+templates:
+  robot:
+    components:
+      guard: {type: safety/guard, remap: {cmd_vel_raw: pursuit/cmd_vel}}
+      pursuit: {type: control/pursuit, remap: {odom: truth, goal: /goal}}
+components: {r1: {template: robot}, r2: {template: robot}}
+)");
+  for (const std::string robot : {"r1", "r2"}) {
+    EXPECT_EQ(topic(composition, robot + "/guard", "cmd_vel"), "/" + robot + "/cmd_vel");
+    EXPECT_EQ(topic(composition, robot + "/guard", "cmd_vel_raw"), "/" + robot + "/cmd_vel");
+    EXPECT_EQ(topic(composition, robot + "/pursuit", "odom"), "/" + robot + "/truth");
+    EXPECT_EQ(topic(composition, robot + "/pursuit", "goal"), "/goal");
+  }
+}
+
 TEST(Remaps, NameATopicOrAnotherPortOfTheScope) {
   const auto composition = resolved(R"(kervan: 1
 name: c
@@ -184,6 +203,26 @@ TEST(Qos, IsTheOneDeclaredByTheWriterUnlessTheCompositionSaysOtherwise) {
   EXPECT_EQ(value(composition, "/r1/waypoint", "lifespan").origin, "c.yaml:13:23 (topic /r1/*)");
 }
 
+TEST(Qos, SaysWhereLivelinessPartitionAndLimitComeFrom) {
+  const auto composition = resolved(R"(kervan: 1
+name: c
+qos: {guarded: {extends: event, depth: all, limit: 50, liveliness: manual, lease: 300ms, partition: [r1, "lab*"]}}
+topics:
+  "/r1/*": {qos: guarded}
+  "/r1/odom": {qos: guarded, partition: none, lease: 1s}
+components: {world: {type: sim/world, params: {map: world.yaml, robots: {r1: {start: [0 m, 0 m, 0 deg]}}}}}
+)");
+  const QosProfile& odom = composition.topics.at("/r1/odom").qos.profile;
+  EXPECT_EQ(odom.liveliness, Liveliness::manual);
+  EXPECT_EQ(odom.lease, 1s);
+  EXPECT_EQ(odom.limit, 50);
+  EXPECT_TRUE(odom.partition.empty());
+  EXPECT_EQ(value_and_origin(value(composition, "/r1/odom", "limit")), "50, from c.yaml:3:52 (profile guarded)");
+  EXPECT_EQ(value_and_origin(value(composition, "/r1/odom", "lease")), "1 s, from c.yaml:6:54 (topic /r1/odom)");
+  EXPECT_EQ(value_and_origin(value(composition, "/r1/sonar", "partition")),
+            "[r1, lab*], from c.yaml:3:100 (profile guarded)");
+}
+
 TEST(Qos, OfAReliableReaderOnABestEffortTopicIsAWarning) {
   const auto composition = resolved(R"(kervan: 1
 name: c
@@ -195,10 +234,9 @@ components:
 )");
   ASSERT_EQ(composition.findings.size(), 1u);
   EXPECT_EQ(composition.findings[0].severity, Severity::warning);
-  EXPECT_EQ(
-      composition.findings[0].message,
-      "world.r1/cmd_vel on '/r1/cmd_vel': it expects a reliable topic, but its reliability is best_effort, from "
-      "c.yaml:3:39 (topic /r1/cmd_vel): samples may be lost");
+  EXPECT_EQ(composition.findings[0].message,
+            "world.r1/cmd_vel on '/r1/cmd_vel': it expects a reliable topic, but its reliability is best_effort, from "
+            "c.yaml:3:39 (topic /r1/cmd_vel): samples may be lost");
   EXPECT_TRUE(composition.usable());
 }
 
@@ -241,6 +279,121 @@ TEST(Containers, BecomeOneWithPlaceAll) {
   ASSERT_EQ(composition.containers.size(), 1u);
   EXPECT_EQ(composition.containers[0].name, "all");
   EXPECT_EQ(composition.containers[0].components.size(), 4u);
+}
+
+std::map<std::string, std::vector<std::string>> placed(const std::vector<std::string>& options,
+                                                       const std::string& yaml) {
+  std::map<std::string, std::vector<std::string>> containers;
+  for (const Container& container : loaded(yaml, {.place = options}).containers)
+    containers[container.name] = container.components;
+  return containers;
+}
+
+TEST(Placement, MovesTheComponentsItNamesAndLeavesTheOthers) {
+  using Containers = std::map<std::string, std::vector<std::string>>;
+  EXPECT_EQ(placed({"sim=r1/planner"}, with_law(lab)),
+            (Containers{{"sim", {"world", "r1/planner", "mission"}}, {"brain", {"r1/control"}}}));
+  EXPECT_EQ(placed({"sim=r*,mission"}, with_law(lab)),
+            (Containers{{"sim", {"world", "r1/planner", "r1/control", "mission"}}}))
+      << "a container that lost all its components is gone";
+  EXPECT_EQ(placed({"all", "drive=r1/control", "plan=r1/planner"}, with_law(lab)),
+            (Containers{{"all", {"world", "mission"}}, {"drive", {"r1/control"}}, {"plan", {"r1/planner"}}}));
+}
+
+TEST(Placement, GivesEachComponentAContainerThatKeepsHostThreadsAndRestart) {
+  const auto composition = loaded(with_law(lab), {.place = {"each"}});
+  std::vector<std::string> names;
+  for (const Container& container : composition.containers) names.push_back(container.name);
+  EXPECT_EQ(names, (std::vector<std::string>{"world", "r1_planner", "r1_control", "mission"}));
+  EXPECT_EQ(composition.containers[2].host, "far");
+  EXPECT_EQ(composition.containers[2].threads, 2);
+  EXPECT_EQ(composition.containers[2].restart.max, 3);
+}
+
+TEST(Placement, OfAFileWithoutContainersSplitsThemOff) {
+  const std::string yaml =
+      "kervan: 1\nname: c\ncomponents: {a: {type: sim/ghost}, b: {type: sim/ghost}, c: {type: sim/ghost}}\n";
+  EXPECT_EQ(placed({"left=a", "right=b"}, yaml),
+            (std::map<std::string, std::vector<std::string>>{{"all", {"c"}}, {"left", {"a"}}, {"right", {"b"}}}));
+}
+
+std::string hosts(const std::string& domain, const std::string& containers) {
+  return "kervan: 1\nname: c\ndomain: " + domain + "\ncontainers: " + containers +
+         "\ncomponents: {a: {type: sim/ghost}, b: {type: sim/ghost}, c: {type: sim/ghost}}\n";
+}
+
+const std::string two_hosts = "{base: {address: 10.0.0.1, interface: eth0}, robot: {address: 10.0.0.2}}";
+const std::string on_two_hosts =
+    "{one: {host: base, components: [a]}, two: {host: robot, components: [b]}, three: {host: robot, components: [c]}}";
+
+TEST(Hosts, FindEachOtherByTheirAddresses) {
+  using Multicast = HostNetwork::Multicast;
+  const auto composition = loaded(hosts("{hosts: " + two_hosts + "}", on_two_hosts));
+  const HostNetwork base = network_of(composition, composition.containers[0]);
+  EXPECT_EQ(base.interface, "eth0");
+  EXPECT_EQ(base.peers, (std::vector<std::string>{"10.0.0.2"}));
+  EXPECT_EQ(base.multicast, Multicast::discovery_only);
+  const HostNetwork robot = network_of(composition, composition.containers[1]);
+  EXPECT_EQ(robot.interface, "");
+  EXPECT_EQ(robot.address, "10.0.0.2");
+  EXPECT_EQ(robot.peers, (std::vector<std::string>{"10.0.0.1"}));
+  EXPECT_EQ(robot.processes, base.processes) << "each must look at every port that the other may have";
+  EXPECT_EQ(robot.processes, 2 + 16);
+}
+
+TEST(Hosts, WithoutMulticastLookForThemselvesToo) {
+  const auto composition = loaded(hosts("{multicast: false, hosts: " + two_hosts + "}", on_two_hosts));
+  const HostNetwork robot = network_of(composition, composition.containers[2]);
+  EXPECT_EQ(robot.multicast, HostNetwork::Multicast::no);
+  EXPECT_EQ(robot.peers, (std::vector<std::string>{"10.0.0.1", "10.0.0.2"}));
+}
+
+TEST(Hosts, AreOfNoConcernToAContainerThatHasNone) {
+  const auto composition = loaded("kervan: 1\nname: c\ncomponents: {a: {type: sim/ghost}}\n");
+  const HostNetwork network = network_of(composition, composition.containers[0]);
+  EXPECT_EQ(network.interface, "lo");
+  EXPECT_TRUE(network.peers.empty());
+  EXPECT_EQ(network.processes, 120);
+}
+
+TEST(Hosts, RunTheirOwnContainersOnly) {
+  const std::string yaml = hosts("{hosts: " + two_hosts + "}", on_two_hosts);
+  const auto names = [](const Composition& composition) {
+    std::vector<std::string> names;
+    for (const Container* container : containers_here(composition)) names.push_back(container->name);
+    return names;
+  };
+  EXPECT_EQ(names(loaded(yaml, {.host = "robot"})), (std::vector<std::string>{"two", "three"}));
+  EXPECT_EQ(names(loaded(yaml, {.place = {"all"}})), (std::vector<std::string>{"all"}));
+  EXPECT_EQ(names(loaded(hosts("{hosts: {left: {}, right: {}}}",
+                               "{one: {host: left, components: [a, b]}, two: {host: right, components: [c]}}"))),
+            (std::vector<std::string>{"one", "two"}))
+      << "hosts without an address are this machine";
+}
+
+void expect_refused(const std::string& yaml, const LoadOptions& options, const std::string& message) {
+  try {
+    containers_here(loaded(yaml, options));
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.what(), message);
+  }
+}
+
+TEST(Hosts, MustBeKnownBeforeARun) {
+  expect_refused(hosts("{hosts: " + two_hosts + "}", on_two_hosts), {},
+                 "c.yaml:4:49: the containers are on several hosts; say which one this is, --host base or robot, or "
+                 "take all of them with --place all");
+  expect_refused(hosts("{hosts: {base: {}, idle: {}}}", "{one: {host: base, components: [a, b, c]}}"), {.host = "idle"},
+                 "--host idle: no container of c is on this host; there are some on base");
+}
+
+TEST(Hosts, HaveRoomForAHundredContainers) {
+  std::string yaml = "kervan: 1\nname: c\ncomponents:\n";
+  for (int i = 0; i < 101; ++i) yaml += "  c" + std::to_string(i) + ": {type: sim/ghost}\n";
+  expect_refused(yaml, {.place = {"each"}},
+                 "c.yaml:4:3: 101 containers are on one host; DDS has room for 100 there, so let some of them share a "
+                 "container");
 }
 
 TEST(FindComposition, SuggestsANameAndListsWhatThereIs) {

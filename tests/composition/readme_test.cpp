@@ -1,4 +1,4 @@
-// The examples of the format's page are real.
+// The examples on the pages of the format are real.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -32,11 +32,13 @@ std::string completed(const std::string& block) {
   return text;
 }
 
-TEST(FormatPage, HasOnlyExamplesThatLoad) {
-  const auto blocks = yaml_blocks(std::filesystem::path(COMPOSITION_TESTS) / "../../deploy/composition/README.md");
-  EXPECT_GE(blocks.size(), 5u);
-  for (const std::string& block : blocks)
-    EXPECT_NO_THROW(composition::load_text(completed(block), "README.md", "")) << block;
+TEST(FormatPages, HaveOnlyExamplesThatLoad) {
+  for (const char* page : {"README.md", "qos.md"}) {
+    const auto blocks = yaml_blocks(std::filesystem::path(COMPOSITION_TESTS) / "../../deploy/composition" / page);
+    EXPECT_FALSE(blocks.empty());
+    for (const std::string& block : blocks)
+      EXPECT_NO_THROW(composition::load_text(completed(block), page, "")) << block;
+  }
 }
 
 }  // namespace
