@@ -199,7 +199,7 @@ void require_consistent(const EffectiveQos& qos, const Node& settings) {
   if (profile.durability == Durability::transient_local && profile.reliability == Reliability::best_effort)
     fail("durability", "transient_local needs reliability: reliable (it is best_effort, from " +
                            qos.value("reliability").origin +
-                           "): a best-effort reader in another process gets no old samples");
+                           "): Cyclone DDS accepts it, and a best-effort reader gets no old samples");
   if (!partitions_meet(profile.partition, profile.partition))
     fail("partition", partition_text(profile.partition) +
                           " would keep the topic's own writers and readers apart: all have this list, and a pattern "

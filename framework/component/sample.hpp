@@ -17,6 +17,8 @@ void* mutable_value_of(SampleBlock* block) noexcept;
 Time published_at(const SampleBlock* block) noexcept;
 Time received_at(const SampleBlock* block) noexcept;
 bool is_disposed(const SampleBlock* block) noexcept;
+/// Whether it repeats its writer's last sample only to say that the writer is alive; under logical clocks.
+bool is_assertion(const SampleBlock* block) noexcept;
 }  // namespace dds
 
 /// A shared, read-only sample of message type T. Copying it copies a pointer. A default-constructed one is empty.

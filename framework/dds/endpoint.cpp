@@ -20,8 +20,6 @@ bool is_disposed(const SampleBlock* block) noexcept {
   return (block->statusinfo & NN_STATUSINFO_DISPOSE) != 0 || block->kind != SDK_DATA;
 }
 
-bool is_assertion(const SampleBlock* block) noexcept { return (block->statusinfo & NN_STATUSINFO_OSPL_AUTO) != 0; }
-
 namespace {
 
 /// Peers read an endpoint's place in the composition and the layout of its type; `kind` is 'w' or 'r'.
@@ -283,17 +281,16 @@ void Writer::assert_alive() { dds_assert_liveliness(entity_); }
 
 void Writer::publish(SampleBlock* block, Time now, bool dispose) {
   // The value goes along with the dispose: plain disposes of one instance merge, so they could not be counted.
-  send(block, now, dispose ? NN_STATUSINFO_DISPOSE : 0);
+  send(block, now, now.time_since_epoch().count(), dispose ? NN_STATUSINFO_DISPOSE : 0);
 }
 
 void Writer::publish_assertion(SampleBlock* block, Time now) {
-  // The only bit that Cyclone sends beside those of the standard; endpoints that are not ours see a sample.
-  send(block, now, NN_STATUSINFO_OSPL_AUTO);
+  send(block, now, now.time_since_epoch().count() + kAssertionsFrom, 0);
 }
 
-void Writer::send(SampleBlock* block, Time now, std::uint32_t status) {
+void Writer::send(SampleBlock* block, Time now, std::int64_t timestamp, std::uint32_t status) {
   block->received = now;
-  block->timestamp.v = now.time_since_epoch().count();
+  block->timestamp.v = timestamp;
   block->statusinfo = status;
   seal(block);
   if (const dds_return_t code = dds_forwardcdr(entity_, block); code < 0)

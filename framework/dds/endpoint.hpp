@@ -16,9 +16,6 @@ namespace kervan::dds {
 
 struct SampleBlock;
 
-/// Whether it repeats its writer's last sample only to say that the writer is alive.
-bool is_assertion(const SampleBlock* block) noexcept;
-
 /// How much of a profile Cyclone is asked for; the port's sample cache applies the rest on the composition's clock.
 enum class CyclonePart {
   whole_profile,  ///< clock wall: Cyclone's own time is the composition's
@@ -139,7 +136,7 @@ class Writer {
   bool wait_for_acknowledgement(Duration patience) const;
 
  private:
-  void send(SampleBlock* block, Time now, std::uint32_t status);
+  void send(SampleBlock* block, Time now, std::int64_t timestamp, std::uint32_t status);
 
   Domain::Topic topic_;
   std::int32_t entity_ = 0;

@@ -386,6 +386,11 @@ void release(SampleBlock* block) noexcept { ddsi_serdata_unref(block); }
 const void* value_of(const SampleBlock* block) noexcept { return block->value; }
 void* mutable_value_of(SampleBlock* block) noexcept { return block->value; }
 Time received_at(const SampleBlock* block) noexcept { return block->received; }
-Time published_at(const SampleBlock* block) noexcept { return Time(Duration(block->timestamp.v)); }
+bool is_assertion(const SampleBlock* block) noexcept {
+  return block->timestamp.v >= kAssertionsFrom && block->timestamp.v < kAssertionsUntil;
+}
+Time published_at(const SampleBlock* block) noexcept {
+  return Time(Duration(block->timestamp.v - (is_assertion(block) ? kAssertionsFrom : 0)));
+}
 
 }  // namespace kervan::dds

@@ -100,6 +100,11 @@ struct SampleType : ddsi_sertype {
 /// Makes the (unregistered) Cyclone type of `support`.
 SampleType* make_sample_type(const TypeSupport& support);
 
+/// Timestamps of assertions: a logical time, which is years at most, plus 2^30 seconds. The timestamp is the only thing
+/// beside the bytes that Cyclone carries unchanged to readers elsewhere, and no wall clock shows these years any more.
+inline constexpr std::int64_t kAssertionsFrom = (std::int64_t{1} << 30) * 1'000'000'000;
+inline constexpr std::int64_t kAssertionsUntil = kAssertionsFrom + std::int64_t{100'000'000} * 1'000'000'000;
+
 /// Sets the block's key, hash and instance from its value; nothing for keyless types.
 void seal(SampleBlock* block);
 

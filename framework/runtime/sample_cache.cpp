@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "framework/component/sample.hpp"
-#include "framework/dds/endpoint.hpp"
 
 namespace kervan::runtime {
 
@@ -99,7 +98,7 @@ void SampleCache::stage(const std::vector<StagedSample>& samples) {
     Instance& target = instance(sample.instance);
     // An assertion repeats its writer's last sample, which is news to nobody but a late joiner.
     const bool late_joiner = !target.newest && profile_.durability == Durability::transient_local;
-    if (dds::is_assertion(sample.block) && !late_joiner) {
+    if (watch_lease_ && dds::is_assertion(sample.block) && !late_joiner) {
       dds::release(sample.block);
       continue;
     }

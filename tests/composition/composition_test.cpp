@@ -220,7 +220,7 @@ components: {world: {type: sim/world, params: {map: world.yaml, robots: {r1: {st
   EXPECT_EQ(value_and_origin(value(composition, "/r1/odom", "limit")), "50, from c.yaml:3:52 (profile guarded)");
   EXPECT_EQ(value_and_origin(value(composition, "/r1/odom", "lease")), "1 s, from c.yaml:6:54 (topic /r1/odom)");
   EXPECT_EQ(value_and_origin(value(composition, "/r1/sonar", "partition")),
-            "[r1, lab*], from c.yaml:3:100 (profile guarded)");
+            "[r1, lab*], from c.yaml:3:101 (profile guarded)");
 }
 
 TEST(Qos, OfAReliableReaderOnABestEffortTopicIsAWarning) {
@@ -359,9 +359,9 @@ TEST(Hosts, AreOfNoConcernToAContainerThatHasNone) {
 TEST(Hosts, RunTheirOwnContainersOnly) {
   const std::string yaml = hosts("{hosts: " + two_hosts + "}", on_two_hosts);
   const auto names = [](const Composition& composition) {
-    std::vector<std::string> names;
-    for (const Container* container : containers_here(composition)) names.push_back(container->name);
-    return names;
+    std::vector<std::string> list;
+    for (const Container* container : containers_here(composition)) list.push_back(container->name);
+    return list;
   };
   EXPECT_EQ(names(loaded(yaml, {.host = "robot"})), (std::vector<std::string>{"two", "three"}));
   EXPECT_EQ(names(loaded(yaml, {.place = {"all"}})), (std::vector<std::string>{"all"}));
@@ -382,7 +382,7 @@ void expect_refused(const std::string& yaml, const LoadOptions& options, const s
 
 TEST(Hosts, MustBeKnownBeforeARun) {
   expect_refused(hosts("{hosts: " + two_hosts + "}", on_two_hosts), {},
-                 "c.yaml:4:49: the containers are on several hosts; say which one this is, --host base or robot, or "
+                 "c.yaml:4:50: the containers are on several hosts; say which one this is, --host base or robot, or "
                  "take all of them with --place all");
   expect_refused(hosts("{hosts: {base: {}, idle: {}}}", "{one: {host: base, components: [a, b, c]}}"), {.host = "idle"},
                  "--host idle: no container of c is on this host; there are some on base");
