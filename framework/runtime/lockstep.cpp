@@ -19,7 +19,7 @@ constexpr unsigned kLongestLoop = 100;
 }  // namespace
 
 Lockstep::Lockstep(Container& container, Instant& instant, unsigned threads)
-    : container_(container), instant_(instant), looping_(container.spec().components.size(), false) {
+    : container_(container), instant_(instant) {
   if (threads > 1) workers_ = std::make_unique<WorkerPool>(threads);
 }
 
@@ -72,6 +72,7 @@ void Lockstep::for_each_parallel(const std::vector<ComponentInstance*>& instance
 /// Cycle 0: what was asked of the container, then deadlines and timers.
 void Lockstep::run_due() {
   instant_.cycle = 0;
+  looping_.clear();
   container_.operations().run_posted();
   batch_.clear();
   for (const auto& instance : container_.instances())
