@@ -152,7 +152,7 @@ class RobotPorts {
         odom_(owner, name + "/odom", qos::sensor, "Pose and speed of " + name + " by its own wheels."),
         truth_(owner, name + "/truth", qos::state, "True pose in map and true speed of " + name + ", every step."),
         contact_(owner, name + "/contact", qos::event, "Each time " + name + " begins to touch something."),
-        clearance_(owner, name + "/clearance", qos::state,
+        clearance_(owner, name + "/clearance", qos::latched,
                    "Least distance of the hull of " + name + " to any obstacle or robot so far.") {}
 
   /// Hands the drive what has been commanded since the last step.

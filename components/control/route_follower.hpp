@@ -27,6 +27,11 @@ class RouteFollower {
   /// empty route leaves nothing to do.
   void start(std::vector<geometry::Vector2> route);
 
+  /// Enters the route where it passes `position` nearest, at the first such place: what lies before it is not driven
+  /// any more. For a robot that is on its way already; one that stands before the first waypoint begins with that. A
+  /// position that is not finite changes nothing.
+  void join(const geometry::Vector2& position);
+
   /// Passes every waypoint that counts from `position`, several if they lie close together. True if the current
   /// waypoint changed or the route was finished. A position that is not finite passes nothing.
   bool advance(const geometry::Vector2& position);

@@ -44,6 +44,7 @@ class RouteFollowerComponent final : public Component {
                                        "Where the robot is."};
   Output<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, "Where to drive now."};
   std::string frame_;
+  bool joined_ = true;  ///< the route, at the place where the robot is
 
   void on_parameters_changed() override { follower_.set_params(params_.follow); }
 
@@ -54,11 +55,21 @@ class RouteFollowerComponent final : public Component {
     const auto* odometry = odom_.latest();
     if (points.empty() && odometry) points.push_back(geometry::position_of(odometry->pose.pose));
     follower_.start(std::move(points));
-    if (odometry) follower_.advance(geometry::position_of(odometry->pose.pose));
+    joined_ = false;
+    if (odometry) join(*odometry, now);
+  }
+
+  /// A component that was started again gets its route again, on which the robot has driven a part already.
+  void join(const nav_msgs::msg::Odometry& odometry, Time now) {
+    const geometry::Vector2 position = geometry::position_of(odometry.pose.pose);
+    follower_.join(position);
+    follower_.advance(position);
+    joined_ = true;
     publish_waypoint(now);
   }
 
   void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
+    if (!joined_) return join(odometry, now);
     const std::size_t before = follower_.index();
     const bool arrived = follower_.arrived();
     follower_.advance(geometry::position_of(odometry.pose.pose));

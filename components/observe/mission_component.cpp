@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <deque>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <map>
 #include <optional>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "components/observe/decimal.hpp"
+#include "components/observe/mission_memory.hpp"
 #include "components/observe/mission_score.hpp"
 #include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
@@ -23,6 +26,7 @@ namespace kervan::observe {
 namespace {
 
 using namespace std::chrono_literals;
+namespace fs = std::filesystem;
 using kervan_msgs::msg::MissionOutcome;
 
 struct RobotGoals {
@@ -67,14 +71,18 @@ class Contender {
                    "Distance of the hull of " + name + " to the world."),
         goal_(owner, name + "/goal", qos::latched, "Where " + name + " is to go.") {}
 
-  void start(Time now) {
-    score_.emplace(params_, now);
+  /// `memory`: of the score before the component was started again; nullptr if there is none.
+  void start(Time now, const MissionMemory* memory) {
+    if (memory)
+      score_.emplace(params_, *memory);
+    else
+      score_.emplace(params_, now);
     publish_goal(now);
   }
 
   void look(Time now) {
     const std::size_t goal = score_->figures().goal;
-    for ([[maybe_unused]] const auto& contact : contact_.take()) score_->contact();
+    for (const auto& contact : contact_.take()) score_->contact(contact->count);
     for (const auto& clearance : clearance_.take()) score_->clearance(static_cast<double>(clearance->range));
     for (const auto& truth : truth_.take())
       score_->truth(now, geometry::pose_of(truth->pose.pose), geometry::twist_of(truth->twist.twist));
@@ -130,7 +138,9 @@ class MissionComponent final : public Component {
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "How the mission ended."};
   Timer tick_{this, params_.period, &MissionComponent::on_tick};
   bool judged_ = false;
+  bool told_ = false;  ///< that nothing can be remembered
   Time activated_{};
+  Time saved_{};
 
   std::deque<Contender> contenders() {
     if (params_.goals.empty() && !describing())
@@ -147,11 +157,39 @@ class MissionComponent final : public Component {
   }
 
   void on_activate(Time now) override {
-    activated_ = now;
+    activated_ = saved_ = now;
+    const MissionMemories memories = remembered();
     for (auto& robot : robots_) {
-      robot.start(now);
-      log().info("{} is sent to goal {}", robot.name(), robot.goal_text());
+      const auto memory = memories.find(robot.name());
+      robot.start(now, memory == memories.end() ? nullptr : &memory->second);
+      log().info("{} is sent {} goal {}", robot.name(), memory == memories.end() ? "to" : "on to", robot.goal_text());
     }
+    remember();
+  }
+
+  fs::path memory_file() const { return run_folder() / "mission.state"; }
+
+  /// What this component knew before it was started again in the same run.
+  MissionMemories remembered() const {
+    if (run_folder().empty()) return {};
+    std::ifstream file(memory_file());
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    return memories_of(text).value_or(MissionMemories());
+  }
+
+  /// A process may be killed at any time: the file is replaced as a whole.
+  void remember() {
+    if (run_folder().empty()) return;
+    MissionMemories memories;
+    for (const auto& robot : robots_) memories[robot.name()] = robot.score().memory();
+    const fs::path fresh = run_folder() / "mission.state.new";
+    std::error_code error;
+    std::ofstream file(fresh);
+    file << to_text(memories);
+    file.close();
+    if (file) fs::rename(fresh, memory_file(), error);
+    if ((!file || error) && !std::exchange(told_, true))
+      log().warn("{} cannot be written: started again, the mission would begin anew", memory_file().string());
   }
 
   /// Takes what is new of a robot and says in the log what came of its goal.
@@ -161,7 +199,10 @@ class MissionComponent final : public Component {
     robot.look(now);
     const MissionFigures& figures = robot.score().figures();
     const std::string sent = robot.goal_text();
-    if (sent != goal) log().info("{} has reached goal {} and is sent to goal {}", robot.name(), goal, sent);
+    if (sent != goal) {
+      remember();
+      log().info("{} has reached goal {} and is sent to goal {}", robot.name(), goal, sent);
+    }
     if (over || !robot.score().ended()) return;
     log().info("{} {} goal {}: error {} m after {} s", robot.name(), robot.reached() ? "has reached" : "did not reach",
                goal, decimal(figures.error, 3), decimal(figures.time, 2));
@@ -181,13 +222,22 @@ class MissionComponent final : public Component {
       report_active();
     else if (now - activated_ >= params_.period)  // At the first tick nobody can have published yet.
       report_degraded(missing);
-    if (!ended) return;
+    if (!ended) {
+      if (now - saved_ < 1s) return;
+      saved_ = now;
+      return remember();
+    }
     publish_result(now, reached ? MissionOutcome::MISSION_SUCCESS : MissionOutcome::MISSION_FAILED, reason());
     finish(reached ? "every robot has reached its goal" : reason());
   }
 
   void on_deactivate(Time now) override {
     if (!judged_) publish_result(now, MissionOutcome::MISSION_ABORTED, "the run was ended before the mission was over");
+  }
+
+  void on_shutdown(Time) override {
+    std::error_code ignored;
+    if (!run_folder().empty()) fs::remove(memory_file(), ignored);
   }
 
   /// Who did not arrive and how far away it was; empty if all did.

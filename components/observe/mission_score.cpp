@@ -5,6 +5,18 @@
 
 namespace kervan::observe {
 
+MissionScore::MissionScore(MissionParams params, const MissionMemory& memory)
+    : params_(std::move(params)), start_(memory.start) {
+  figures_.goal = std::min(memory.goal, params_.goals.size() - 1);
+  figures_.path = memory.path;
+  figures_.contacts = memory.contacts;
+  figures_.min_clearance = memory.min_clearance;
+}
+
+MissionMemory MissionScore::memory() const {
+  return {start_, figures_.goal, figures_.path, figures_.contacts, figures_.min_clearance};
+}
+
 void MissionScore::truth(Time now, const geometry::Pose2& pose, const geometry::Twist2& twist) {
   if (ended()) return;
   const geometry::Vector2 position = pose.position();
@@ -37,8 +49,8 @@ void MissionScore::truth(Time now, const geometry::Pose2& pose, const geometry::
   tick(now);
 }
 
-void MissionScore::contact() {
-  if (!ended()) ++figures_.contacts;
+void MissionScore::contact(std::uint32_t count) {
+  if (!ended()) figures_.contacts = std::max(figures_.contacts, count);
 }
 
 void MissionScore::clearance(double distance) {

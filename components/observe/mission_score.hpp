@@ -37,17 +37,32 @@ struct MissionFigures {
   std::optional<double> min_clearance;  ///< least distance between hull and world; none if it was never told
 };
 
+/// What a score needs to go on after its component was started again.
+struct MissionMemory {
+  Time start{};
+  std::size_t goal = 0;
+  double path = 0.0;  ///< m
+  std::uint32_t contacts = 0;
+  std::optional<double> min_clearance;  ///< m
+};
+
 /// A goal is reached by standing, for rest_time, within the tolerance. Passing it does not count, nor does standing
 /// elsewhere end the mission; only the time-out does. Once it has ended the figures no longer change.
 class MissionScore {
  public:
   MissionScore(MissionParams params, Time start) : params_(std::move(params)), start_(start) {}
 
+  /// Goes on where another one was; what happened in between is in the path only as a straight line, and not at all if
+  /// it was never told. A goal that is not there any more counts as the last.
+  MissionScore(MissionParams params, const MissionMemory& memory);
+
+  MissionMemory memory() const;
+
   /// Where the robot is and how it moves at `now`, in the frame of the goals. Times must not go back.
   void truth(Time now, const geometry::Pose2& pose, const geometry::Twist2& twist);
 
-  /// One contact has begun.
-  void contact();
+  /// A contact has begun; `count` is that of the robot's contacts so far, this one included.
+  void contact(std::uint32_t count);
 
   /// The distance between the robot's hull and the world, m.
   void clearance(double distance);

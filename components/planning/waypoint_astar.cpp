@@ -74,10 +74,17 @@ Route find_route(const WaypointGraph& graph, std::size_t start, std::size_t goal
 Route find_route(const WaypointGraph& graph, const geometry::Vector2& start, const geometry::Vector2& goal,
                  double reach) {
   const auto first = graph.nearest(start, reach);
-  if (!first) return nothing(RouteStatus::start_off_graph);
+  const auto edge = first ? std::nullopt : graph.nearest_edge(start, reach);
+  if (!first && !edge) return nothing(RouteStatus::start_off_graph);
   const auto last = graph.nearest(goal, reach);
   if (!last) return nothing(RouteStatus::goal_off_graph);
-  return find_route(graph, *first, *last);
+  if (first) return find_route(graph, *first, *last);
+  // Both ends lead to the goal or neither does.
+  Route a = find_route(graph, edge->first, *last);
+  Route b = find_route(graph, edge->second, *last);
+  const double to_a = (graph.position(edge->first) - start).norm(),
+               to_b = (graph.position(edge->second) - start).norm();
+  return to_a + a.cost <= to_b + b.cost ? a : b;
 }
 
 }  // namespace kervan::planning

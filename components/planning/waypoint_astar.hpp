@@ -33,8 +33,10 @@ struct Route {
 /// with the lower number is expanded first, so that equal graphs give equal routes.
 Route find_route(const WaypointGraph& graph, std::size_t start, std::size_t goal);
 
-/// The cheapest route between the nodes nearest to two points of the map frame, each at most `reach` metres away from
-/// its node. A point that is not finite is off the graph.
+/// The cheapest route between two points of the map frame. Each is mapped to the node nearest to it, at most `reach`
+/// metres away. A start that is near no node, but at most `reach` from an edge, is on its way along it: the route
+/// begins with that end of the edge over which it is cheaper, the way to it included. A point that is not finite is off
+/// the graph.
 Route find_route(const WaypointGraph& graph, const geometry::Vector2& start, const geometry::Vector2& goal,
                  double reach);
 

@@ -44,6 +44,27 @@ std::optional<std::size_t> WaypointGraph::nearest(const geometry::Vector2& point
   return best;
 }
 
+std::optional<std::pair<std::size_t, std::size_t>> WaypointGraph::nearest_edge(const geometry::Vector2& point,
+                                                                               double reach) const {
+  std::optional<std::pair<std::size_t, std::size_t>> best;
+  double best_distance = reach;
+  for (std::size_t a = 0; a < nodes_.size(); ++a) {
+    for (const Edge& edge : edges_[a]) {
+      if (edge.to < a) continue;
+      const geometry::Vector2 along = nodes_[edge.to] - nodes_[a];
+      const double length2 = along.squaredNorm();
+      const double share = length2 > 0.0 ? std::clamp((point - nodes_[a]).dot(along) / length2, 0.0, 1.0) : 0.0;
+      const double d = (point - nodes_[a] - share * along).norm();
+      const std::pair found{a, edge.to};
+      const bool better = best ? d < best_distance || (d == best_distance && found < *best) : d <= best_distance;
+      if (!better) continue;
+      best = found;
+      best_distance = d;
+    }
+  }
+  return best;
+}
+
 void WaypointGraph::set_edge(std::size_t from, std::size_t to, double cost) {
   auto& edges = edges_[from];
   const auto known = std::find_if(edges.begin(), edges.end(), [to](const Edge& edge) { return edge.to == to; });

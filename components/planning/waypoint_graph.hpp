@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "framework/geometry/pose2.hpp"
@@ -36,6 +37,10 @@ class WaypointGraph {
   /// The node nearest to `point`, the lower number if two are equally near; none if no node lies within `reach` metres
   /// or the point is not finite.
   std::optional<std::size_t> nearest(const geometry::Vector2& point, double reach) const;
+
+  /// The edge nearest to `point`, as its two nodes with the lower number first; the one with the lower numbers if two
+  /// are equally near; none if no edge passes within `reach` metres or the point is not finite.
+  std::optional<std::pair<std::size_t, std::size_t>> nearest_edge(const geometry::Vector2& point, double reach) const;
 
  private:
   void set_edge(std::size_t from, std::size_t to, double cost);

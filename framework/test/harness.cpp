@@ -50,7 +50,8 @@ void expect_type(const std::string& port, const TypeSupport& is, const TypeSuppo
     throw std::invalid_argument("port '" + port + "' carries " + is.name + ", the test uses " + wanted.name);
 }
 
-runtime::ContainerSpec spec_of(const std::string& type, const ValueMap& parameters) {
+runtime::ContainerSpec spec_of(const std::string& type, const ValueMap& parameters,
+                               const std::filesystem::path& run_folder) {
   // Domains without a network are private to the process; the numbers only keep its own apart.
   static std::atomic<std::uint32_t> next_domain{1};
   runtime::ContainerSpec spec;
@@ -58,6 +59,7 @@ runtime::ContainerSpec spec_of(const std::string& type, const ValueMap& paramete
   spec.clock = runtime::ClockMode::lockstep;
   spec.domain.id = next_domain++ % 200 + 1;
   spec.domain.network = false;
+  spec.run_folder = run_folder;
   spec.log_to_console = false;
   spec.components.push_back({.name = "subject", .type = type, .parameters = parameters});
   return spec;
@@ -73,13 +75,13 @@ struct Harness::Impl {
   std::map<std::string, std::unique_ptr<Recorder>> recorders;
   bool ended = false;
 
-  void start(const std::string& type, const ValueMap& parameters) {
+  void start(const std::string& type, const ValueMap& parameters, const std::filesystem::path& run_folder = {}) {
     if (!registry.find(type)) {
       std::string folders;
       for (const auto& folder : registry.folders()) folders += " " + folder.string();
       throw std::invalid_argument("there is no component type '" + type + "'; looked in" + folders);
     }
-    container = std::make_unique<runtime::Container>(spec_of(type, parameters), registry);
+    container = std::make_unique<runtime::Container>(spec_of(type, parameters, run_folder), registry);
     subject = container->instances().front().get();
     auto& domain = container->domain();
     unsigned index = static_cast<unsigned>(subject->outputs().size());
@@ -99,8 +101,9 @@ struct Harness::Impl {
   }
 };
 
-Harness::Harness(const std::string& type, const ValueMap& parameters) : impl_(std::make_unique<Impl>()) {
-  impl_->start(type, parameters);
+Harness::Harness(const std::string& type, const ValueMap& parameters, const std::filesystem::path& run_folder)
+    : impl_(std::make_unique<Impl>()) {
+  impl_->start(type, parameters, run_folder);
 }
 
 Harness::Harness(const ComponentClass& type, const ValueMap& parameters) : impl_(std::make_unique<Impl>()) {

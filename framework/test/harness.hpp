@@ -7,6 +7,7 @@
 ///   EXPECT_GT(harness.latest<geometry_msgs::msg::TwistStamped>("cmd_vel_raw")->twist.linear.x, 0.0);
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -21,8 +22,9 @@ class Harness {
  public:
   /// The component type called `type`, found as a container finds it (see ComponentRegistry). Parameters are in SI
   /// units: {{"period", 0.1}}. Throws what the component's constructor throws, std::invalid_argument for an unknown
-  /// type.
-  explicit Harness(const std::string& type, const ValueMap& parameters = {});
+  /// type. `run_folder` is where it keeps files; empty: nowhere.
+  explicit Harness(const std::string& type, const ValueMap& parameters = {},
+                   const std::filesystem::path& run_folder = {});
 
   /// A component of the test program itself; see define().
   explicit Harness(const ComponentClass& type, const ValueMap& parameters = {});

@@ -64,6 +64,7 @@ TEST(MissionComponent, FailsAtTheTimeOutAndSaysHowFarTheRobotIs) {
   drive(harness, "r1", 0.0, 9.71, 4s);
   kervan_msgs::msg::Contact contact;
   contact.robot = "r1";
+  contact.count = 1;
   harness.feed("r1/contact", contact);
   for (const float distance : {0.5F, 0.25F, 0.75F}) {
     sensor_msgs::msg::Range clearance;

@@ -105,7 +105,7 @@ TEST(MissionScore, KeepsTheLeastClearanceAndCountsContacts) {
   MissionScore score(to_ten(), at(0s));
   EXPECT_FALSE(score.figures().min_clearance);
   for (const double distance : {0.4, 0.163, 0.2, std::numeric_limits<double>::quiet_NaN()}) score.clearance(distance);
-  score.contact();
+  score.contact(1);
   EXPECT_EQ(score.figures().min_clearance, 0.163);
   EXPECT_EQ(score.figures().contacts, 1u);
 }
@@ -114,7 +114,7 @@ TEST(MissionScore, ChangesNothingOnceItHasEnded) {
   MissionScore score(to_ten(), at(0s));
   score.tick(at(90s));
   drive(score, at(91s), at(95s), 9.0, 10.0);
-  score.contact();
+  score.contact(1);
   score.clearance(0.1);
   EXPECT_EQ(score.figures().outcome, MissionOutcome::timed_out);
   EXPECT_EQ(score.figures().path, 0.0);

@@ -63,6 +63,31 @@ TEST(RouteFollower, NeverGoesBackToAPassedWaypoint) {
   EXPECT_EQ(follower.index(), 2u);
 }
 
+TEST(RouteFollower, JoinsARouteWhereItPassesNearest) {
+  auto follower = on_route({{0, 0}, {4, 0}, {4, 4}, {8, 4}});
+  follower.join({4.3, 2.0});
+  EXPECT_EQ(follower.index(), 2u) << "on its way to the third waypoint";
+  follower.join({1.0, 0.0});
+  EXPECT_EQ(follower.index(), 2u) << "what is passed stays passed";
+}
+
+TEST(RouteFollower, BeginsWithTheFirstWaypointWhenItStandsBeforeIt) {
+  auto follower = on_route({{2, 0}, {4, 0}});
+  follower.join({0, 0});
+  EXPECT_EQ(follower.index(), 0u);
+  follower.join({std::numeric_limits<double>::quiet_NaN(), 0.0});
+  EXPECT_EQ(follower.index(), 0u);
+  RouteFollower without({});
+  without.join({0, 0});
+  EXPECT_FALSE(without.waypoint());
+}
+
+TEST(RouteFollower, JoinsAWayThereAndBackOnTheWayThere) {
+  auto follower = on_route({{0, 0}, {4, 0}, {0, 0}});
+  follower.join({2, 0});
+  EXPECT_EQ(follower.index(), 1u);
+}
+
 TEST(RouteFollower, StaysArrivedWhenTheRobotDriftsAway) {
   auto follower = on_route({{4, 0}});
   follower.advance({4, 0});

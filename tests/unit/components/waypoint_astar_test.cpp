@@ -233,5 +233,23 @@ TEST(WaypointGraph, FindsTheNearestNodeWithinReachOnly) {
   EXPECT_EQ(graph.nearest({3.1, 0}, 1.0), std::nullopt);
 }
 
+TEST(WaypointAstar, BeginsOnAnEdgeWithTheEndOverWhichTheGoalIsNearer) {
+  const WaypointGraph graph = lab();
+  EXPECT_EQ(find_route(graph, Vector2(8.0, 6.4), Vector2(16.0, 7.8), 1.0).nodes, (Nodes{4, 5}));
+  EXPECT_EQ(find_route(graph, Vector2(8.0, 6.4), Vector2(0.0, 0.0), 1.0).nodes, (Nodes{2, 1, 0}));
+  EXPECT_EQ(find_route(graph, Vector2(8.0, 8.4), Vector2(16.0, 7.8), 1.0).status, RouteStatus::start_off_graph);
+}
+
+TEST(WaypointGraph, FindsTheNearestEdgeWithTheLowerNumbers) {
+  WaypointGraph graph({{0, 0}, {4, 0}, {4, 2}, {0, 2}});
+  graph.connect(2, 3);
+  graph.connect(1, 0);
+  EXPECT_EQ(graph.nearest_edge({2, 0.9}, 1.0), std::pair(std::size_t{0}, std::size_t{1}));
+  EXPECT_EQ(graph.nearest_edge({2, 1.0}, 1.0), std::pair(std::size_t{0}, std::size_t{1})) << "equally near";
+  EXPECT_EQ(graph.nearest_edge({2, 1.1}, 1.0), std::pair(std::size_t{2}, std::size_t{3}));
+  EXPECT_FALSE(graph.nearest_edge({2, 3.1}, 1.0));
+  EXPECT_FALSE(graph.nearest_edge({std::numeric_limits<double>::quiet_NaN(), 0}, 1.0));
+}
+
 }  // namespace
 }  // namespace kervan::planning
