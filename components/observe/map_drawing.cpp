@@ -18,9 +18,10 @@ using geometry::Vector2;
 constexpr double page_width = 1000.0, margin = 36.0, header = 74.0, gap = 34.0;
 constexpr double map_width = page_width - 2.0 * margin, map_height = 900.0;  // the most
 constexpr double detail_size = 240.0, detail_gap = 20.0, line_height = 19.0;
-constexpr std::size_t most_details = 3;
+constexpr std::size_t most_details = 3;  // of more robots goals are not enlarged, nor waypoints numbered
 
-constexpr std::array<const char*, 6> robot_colours{"#1769aa", "#d1580f", "#2c8a4b", "#8445a8", "#b3881a", "#0f8b8d"};
+constexpr std::array<const char*, 10> robot_colours{"#1769aa", "#d1580f", "#2c8a4b", "#8445a8", "#b3881a",
+                                                    "#0f8b8d", "#c2417c", "#5b6b1e", "#7a4a2b", "#4f5bd5"};
 constexpr const char* ink = "#1f2933";
 constexpr const char* soft_ink = "#6b7785";
 constexpr const char* wall_colour = "#2f3b47";
@@ -283,13 +284,15 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, d
     if (on_a_route(drawing, drawing.nodes[i])) draw_waypoint(layer, drawing.nodes[i], i);
   for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
     const auto& robot = drawing.robots[i];
-    if (drawing.nodes.empty())
+    if (drawing.nodes.empty() && drawing.robots.size() <= most_details)
       for (std::size_t k = 0; k < robot.route.size(); ++k) draw_waypoint(layer, robot.route[k], k);
     if (!robot.truth.empty()) draw_start(layer, robot.truth.front(), colour_of(i));
     if (!robot.truth.empty()) draw_end(layer, robot.truth.back(), colour_of(i));
     if (robot.goal) draw_goal(layer, *robot.goal);
     if (robot.closest) draw_closest(layer, *robot.closest);
     for (const auto& contact : robot.contacts) draw_contact(layer, contact);
+    if (drawing.robots.size() > 1 && !robot.truth.empty())
+      layer.label(robot.truth.front(), robot.name, 11.5, colour_of(i), "middle", {0.0, 18.0}, "bold", true);
   }
   draw_scale(layer, bounds.high + Vector2(0.0, 12.0 * px), 110.0);
 }
@@ -355,29 +358,38 @@ void draw_header(SvgWriter& svg, const MapDrawing& drawing) {
   svg.text(drawing.subtitle, {{"x", pixels(margin)}, {"y", "58"}, {"font-size", "13"}, {"fill", soft_ink}});
 }
 
-/// The robots' figures from (margin, top) downwards, page pixels. Returns where they end.
-double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
-  double y = top;
-  for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
-    const auto& robot = drawing.robots[i];
-    y += line_height;
-    svg.open("text", {{"x", pixels(margin)}, {"y", pixels(y)}, {"font-size", "13"}, {"fill", ink}});
-    svg.span(robot.name, {{"font-weight", "bold"}, {"fill", colour_of(i)}});
-    svg.span(robot.reached ? "reached the goal" : "did not reach the goal",
-             {{"dx", "8"}, {"font-weight", "bold"}, {"fill", robot.reached ? success_colour : failure_colour}});
-    svg.close("text");
-    // Two columns of label and value.
-    for (std::size_t k = 0; k < robot.figures.size(); ++k) {
-      const double x = margin + (k % 2 == 0 ? 0.0 : 205.0);
-      if (k % 2 == 0) y += line_height;
-      svg.text(robot.figures[k].first, {{"x", pixels(x)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", soft_ink}});
-      svg.text(
-          robot.figures[k].second,
-          {{"x", pixels(x + 185.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}, {"text-anchor", "end"}});
-    }
-    y += 8.0;
+/// The figures of one robot from (left, top) downwards, page pixels. Returns where they end.
+double draw_figures(SvgWriter& svg, const DrawnRobot& robot, const char* colour, double left, double top) {
+  double y = top + line_height;
+  svg.open("text", {{"x", pixels(left)}, {"y", pixels(y)}, {"font-size", "13"}, {"fill", ink}});
+  svg.span(robot.name, {{"font-weight", "bold"}, {"fill", colour}});
+  svg.span(robot.reached ? "reached the goal" : "did not reach the goal",
+           {{"dx", "8"}, {"font-weight", "bold"}, {"fill", robot.reached ? success_colour : failure_colour}});
+  svg.close("text");
+  // Two columns of label and value.
+  for (std::size_t k = 0; k < robot.figures.size(); ++k) {
+    const double x = left + (k % 2 == 0 ? 0.0 : 205.0);
+    if (k % 2 == 0) y += line_height;
+    svg.text(robot.figures[k].first, {{"x", pixels(x)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", soft_ink}});
+    svg.text(robot.figures[k].second,
+             {{"x", pixels(x + 185.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}, {"text-anchor", "end"}});
   }
-  return y;
+  return y + 8.0;
+}
+
+/// The robots' figures from (margin, top) downwards, page pixels; those of many robots side by side. Returns where they
+/// end.
+double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
+  const std::size_t count = drawing.robots.size(), columns = count > most_details ? 2 : 1;
+  const std::size_t rows = (count + columns - 1) / columns;
+  double bottom = top;
+  for (std::size_t column = 0; column < columns; ++column) {
+    double y = top;
+    for (std::size_t i = column * rows; i < std::min(count, (column + 1) * rows); ++i)
+      y = draw_figures(svg, drawing.robots[i], colour_of(i), margin + static_cast<double>(column) * 480.0, y);
+    bottom = std::max(bottom, y);
+  }
+  return bottom;
 }
 
 /// What the lines and marks mean, in two columns from (margin, top) downwards, page pixels. Returns where it ends.
@@ -427,7 +439,7 @@ std::string to_svg(const MapDrawing& drawing) {
   SvgWriter foot;
   const double text_bottom = draw_legend(foot, draw_figures(foot, drawing, map_bottom - 6.0) + 4.0);
   std::vector<std::size_t> details;
-  for (std::size_t i = 0; i < drawing.robots.size() && details.size() < most_details; ++i)
+  for (std::size_t i = 0; i < drawing.robots.size() && drawing.robots.size() <= most_details; ++i)
     if (has_detail(drawing.robots[i])) details.push_back(i);
   const bool beside = details.size() <= 2;  // the text takes the width of two details
   const double details_top = beside ? map_bottom : text_bottom + gap;

@@ -43,7 +43,8 @@ struct MapDrawing {
   std::string result;    ///< "success", "failed", "aborted"; shown in its colour beside the title
   std::string subtitle;  ///< one line under the title
   DrawnWorld world;
-  Polyline nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, the routes' waypoints are numbered
+  Polyline
+      nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, those of up to three robots' routes are
   std::vector<DrawnRobot> robots;
 };
 

@@ -1,5 +1,7 @@
 #include "deploy/composition/clock_rules.hpp"
 
+#include <algorithm>
+
 namespace kervan::composition {
 namespace {
 
@@ -16,15 +18,39 @@ std::vector<PortReference> clock_writers(const ResolvedComposition& resolved) {
   return writers;
 }
 
+/// Hands the step to whoever takes it; what keeps it from that, or nothing.
+std::string give_step(ResolvedComposition& resolved, const std::vector<PortReference>& writers, Duration step) {
+  for (const PortReference writer : writers) {
+    ResolvedComponent& component = resolved.components[writer.component];
+    const auto info = std::ranges::find(component.manifest.parameters, "step", &ParameterInfo::name);
+    if (info == component.manifest.parameters.end() || info->kind != ParameterKind::duration) continue;
+    const auto given = component.parameters.find("step");
+    if (given != component.parameters.end() && from_seconds(std::get<double>(given->second)) != step)
+      return component.name + " has another step of its own; give it in one place";
+    const ValueMap values{{"step", seconds(step)}};
+    try {
+      validate({*info}, values, false);
+    } catch (const ParameterError& error) {
+      return error.message();
+    }
+    component.parameters["step"] = seconds(step);
+    return {};
+  }
+  return "no component here writes /clock and has a parameter 'step', so it means nothing; leave it out";
+}
+
 }  // namespace
 
 void judge_clock(ResolvedComposition& resolved) {
   const Clock& clock = resolved.source.clock;
-  if (clock.mode != ClockMode::sim) return;
   const auto find = [&](Severity severity, const Location& at, const std::string& what) {
     resolved.findings.push_back({severity, at, what});
   };
   const std::vector<PortReference> writers = clock_writers(resolved);
+  if (clock.step)
+    if (const std::string why = give_step(resolved, writers, *clock.step); !why.empty())
+      find(Severity::error, clock.step_location, "step: " + why);
+  if (clock.mode != ClockMode::sim) return;
   if (writers.empty())
     find(Severity::error, clock.location,
          "clock sim needs a component that writes /clock, as sim/world does; add one, or write wall or lockstep");

@@ -5,7 +5,8 @@
 
 namespace kervan::composition {
 
-/// Adds to the findings; the ports must have their topics already.
+/// Adds to the findings, and gives the clock's step to the component that simulates; the ports must have their topics
+/// already.
 void judge_clock(ResolvedComposition& resolved);
 
 }  // namespace kervan::composition

@@ -18,9 +18,10 @@ std::string_view to_text(ClockMode mode);
 
 struct Clock {
   ClockMode mode = ClockMode::wall;
-  Duration step = std::chrono::milliseconds(10);  ///< of the simulation
-  double pace = 1.0;                              ///< simulated time over wall time; 0 is as fast as possible
-  Location location = {};                         ///< of its mode
+  std::optional<Duration> step;  ///< the parameter `step` of the component that writes /clock, if it is given here
+  Location step_location = {};
+  double pace = 1.0;       ///< simulated time over wall time; 0 is as fast as possible
+  Location location = {};  ///< of its mode
 };
 
 struct Host {

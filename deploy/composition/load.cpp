@@ -25,7 +25,8 @@ Clock read_clock(const Node& node) {
   if (const Node* step = node.optional("step")) {
     if (clock.mode == ClockMode::wall) step->fail_at_key("'step' has no meaning under clock wall");
     clock.step = step->as_duration();
-    if (clock.step <= Duration::zero()) step->fail(step->shown() + " is out of range; allowed: more than 0 s");
+    clock.step_location = step->location;
+    if (*clock.step <= Duration::zero()) step->fail(step->shown() + " is out of range; allowed: more than 0 s");
   }
   if (clock.mode == ClockMode::lockstep) clock.pace = 0.0;
   if (const Node* pace = node.optional("pace")) {

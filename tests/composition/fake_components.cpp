@@ -20,11 +20,13 @@ struct FakeRobot {
 struct WorldParams {
   FilePath map;
   std::int64_t seed = 1;
+  Duration step = 10ms;
   std::map<std::string, FakeRobot> robots;
   template <class Visitor>
   void describe(Visitor& v) {
     v(map, "map", {.help = "World file.", .required = true});
     v(seed, "seed", {.min = 0, .max = 4294967295.0, .help = "Seed of all noise."});
+    v(step, "step", {.min = 0.001, .max = 0.1, .help = "Time step."});
     v(robots, "robots", {.help = "Robots by name."});
   }
 };

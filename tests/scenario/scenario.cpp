@@ -37,7 +37,7 @@ RobotExpectation robot(const Node& node) {
 
 Scenario load_scenario(const fs::path& file) {
   const Node root = config::load(file.string());
-  root.only_keys({"kervan_scenario", "help", "composition", "args", "seeds", "expect"});
+  root.only_keys({"kervan_scenario", "help", "composition", "place", "args", "seeds", "expect"});
   const Node& version = root.required("kervan_scenario");
   if (version.as_integer() != 1) version.fail("this is version 1 of the format");
 
@@ -47,6 +47,10 @@ Scenario load_scenario(const fs::path& file) {
   scenario.composition = root.required("composition").as_text();
   if (scenario.composition.find('/') != std::string::npos)
     scenario.composition = (file.parent_path().parent_path() / scenario.composition).string();
+  if (const Node* place = root.optional("place")) {
+    place->as_choice({"all"});
+    scenario.place_all = true;
+  }
   if (const Node* arguments = root.optional("args"))
     for (const Node& argument : arguments->map())
       scenario.arguments.push_back(argument.name + "=" + argument.as_text());

@@ -33,6 +33,7 @@ struct Scenario {
   std::string name;  ///< of its file
   std::string help;
   std::string composition;             ///< a shipped one, or an absolute path
+  bool place_all = false;              ///< in one container, whatever the composition says
   std::vector<std::string> arguments;  ///< "controller=potential_gecui"
   std::optional<std::int64_t> first_seed, last_seed;
   std::string result;

@@ -59,6 +59,7 @@ struct ScenarioRun {
 
 ScenarioRun run_scenario(const Scenario& scenario, std::optional<std::int64_t> seed, unsigned threads) {
   Command command{KERVAN_PROGRAM, {"run", scenario.composition, "--json", "--threads", std::to_string(threads)}};
+  if (scenario.place_all) command.arguments.insert(command.arguments.end(), {"--place", "all"});
   std::vector<std::string> arguments = scenario.arguments;
   if (seed) arguments.push_back("seed=" + std::to_string(*seed));
   for (const std::string& argument : arguments) command.arguments.insert(command.arguments.end(), {"--arg", argument});
@@ -129,6 +130,10 @@ TEST_P(ScenarioTest, EndsAsExpected) {
   const std::string trace = run.summary["trace_hash"];
   EXPECT_EQ(run_scenario(scenario, GetParam().seed, 1).summary["trace_hash"], trace) << "the same again";
   EXPECT_EQ(run_scenario(scenario, GetParam().seed, 4).summary["trace_hash"], trace) << "with four threads";
+  if (!scenario.place_all) return;
+  Scenario split = scenario;
+  split.place_all = false;
+  EXPECT_EQ(run_scenario(split, GetParam().seed, 1).summary["trace_hash"], trace) << "in its own containers";
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenario, ScenarioTest, testing::ValuesIn(cases()), name_of);
