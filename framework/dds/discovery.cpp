@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "framework/dds/endpoint_qos.hpp"
+
 namespace kervan::dds {
 
 namespace {
@@ -153,6 +155,7 @@ void Discovery::take_endpoints(std::int32_t reader, bool writers, std::vector<Di
                                             event.endpoint.topic = topic.starts_with("rt/") ? topic.substr(2) : topic;
                                             event.endpoint.wire_type = sample.type_name;
                                             event.endpoint.identity = parse_identity(user_data_of(sample.qos));
+                                            event.endpoint.qos = endpoint_qos(sample.qos);
                                             participant_of_[info.instance_handle] = to_guid(sample.participant_key);
                                           }
                                           events.push_back(std::move(event));

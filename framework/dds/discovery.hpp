@@ -2,7 +2,6 @@
 /// about those whose type differs; here every endpoint is a value, foreign ones (ROS 2, plain Cyclone) included.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -11,12 +10,10 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/component/qos_match.hpp"
 #include "framework/dds/endpoint.hpp"
 
 namespace kervan::dds {
-
-/// As DDS prints it: in network byte order.
-using Guid = std::array<std::uint8_t, 16>;
 
 /// What one of our participants says of itself to every peer.
 struct ParticipantIdentity {
@@ -43,6 +40,7 @@ struct DiscoveredEndpoint {
   std::string topic;                         ///< "/r1/scan"; of topics that are not ROS 2's "rt/…", the name as it is
   std::string wire_type;                     ///< "sensor_msgs::msg::dds_::LaserScan_"
   std::optional<EndpointIdentity> identity;  ///< nothing: not one of ours
+  EndpointQos qos;                           ///< what it offers or requests
   DiscoveredParticipant participant;
 };
 

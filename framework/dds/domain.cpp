@@ -1,9 +1,6 @@
 #include "framework/dds/domain.hpp"
 
 #include <dds/dds.h>
-#include <dds/ddsrt/log.h>
-
-#include <cstring>
 
 #include "framework/dds/sample_block.hpp"
 
@@ -23,33 +20,12 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-/// Collects what Cyclone logs while it exists: its return codes alone do not say why a domain cannot be made.
-class LogCapture {
- public:
-  LogCapture() : lock_(mutex()) { dds_set_log_sink(&LogCapture::take, this); }
-  LogCapture(const LogCapture&) = delete;
-  LogCapture& operator=(const LogCapture&) = delete;
-  ~LogCapture() { dds_set_log_sink(nullptr, nullptr); }
-
-  std::string text() const { return text_.empty() ? "Cyclone DDS gave no reason" : text_; }
-
- private:
-  static std::mutex& mutex() {
-    static std::mutex one_at_a_time;  // the sink is global to the process
-    return one_at_a_time;
-  }
-  static void take(void* self, const dds_log_data_t* line) {
-    if (!(line->priority & (DDS_LC_ERROR | DDS_LC_FATAL | DDS_LC_WARNING))) return;
-    std::string message(line->message, line->size ? line->size : std::strlen(line->message));
-    while (!message.empty() && (message.back() == '\n' || message.back() == '\0')) message.pop_back();
-    auto& text = static_cast<LogCapture*>(self)->text_;
-    if (!text.empty()) text += "; ";
-    text += message;
-  }
-
-  std::lock_guard<std::mutex> lock_;
-  std::string text_;
-};
+/// What Cyclone has logged so far, in one line: its return codes alone do not say why a domain cannot be made.
+std::string reasons(Reports& reports) {
+  std::string text;
+  for (const LogLine& line : reports.take_lines()) text += (text.empty() ? "" : "; ") + line.text;
+  return text.empty() ? "Cyclone DDS gave no reason" : text;
+}
 
 }  // namespace
 
@@ -81,15 +57,15 @@ std::string cyclone_configuration(const DomainConfig& config) {
   return xml + "</Discovery>";
 }
 
-Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time) : time_(time) {
-  LogCapture log;
+Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time)
+    : log_(config.id, reports_), time_(time) {
   const auto fail = [&](const char* what, int code) {
     if (domain_ > 0) dds_delete(domain_);
     throw DdsError(std::string("cannot ") + what + " (domain " + std::to_string(config.id) +
                    (!config.network            ? ", no network"
                     : config.interface.empty() ? ", address " + config.address
                                                : ", interface " + config.interface) +
-                   "): " + dds_strretcode(-code) + "; " + log.text());
+                   "): " + dds_strretcode(-code) + "; " + reasons(reports_));
   };
   domain_ = dds_create_domain(config.id, cyclone_configuration(config).c_str());
   if (domain_ < 0) fail("create the DDS domain", domain_);
@@ -98,6 +74,7 @@ Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time) :
   participant_ = dds_create_participant(config.id, qos, nullptr);
   dds_delete_qos(qos);
   if (participant_ < 0) fail("create the DDS participant", participant_);
+  reports_.print_unheard();
 }
 
 Domain::~Domain() { dds_delete(domain_); }
@@ -114,7 +91,7 @@ Domain::Topic Domain::topic(const std::string& name, const TypeSupport& type) {
     return found->second.topic;
   }
 
-  SampleType* sample_type = make_sample_type(*known);
+  SampleType* sample_type = make_sample_type(*known, reports_);
   sample_type->time = time_;
   ddsi_sertype* registered = sample_type;
   const std::string wire_name = "rt" + name;

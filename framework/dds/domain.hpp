@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/component/time.hpp"
+#include "framework/dds/reports.hpp"
 #include "framework/dds/type_support.hpp"
 
 namespace kervan::dds {
@@ -43,8 +44,8 @@ struct SampleType;
 /// The first failure is fatal: after a failed domain a participant might come up on another interface, unasked.
 class Domain {
  public:
-  /// `time` stamps what arrives from other processes, in nanoseconds on the composition's clock; nullptr: the wall clock
-  /// does. It must outlive the domain. Throws DdsError if the domain or its participant cannot be made.
+  /// `time` stamps what arrives from other processes, in nanoseconds on the composition's clock; nullptr: the wall
+  /// clock does. It must outlive the domain. Throws DdsError if the domain or its participant cannot be made.
   explicit Domain(const DomainConfig& config, const std::atomic<Time::rep>* time = nullptr);
   Domain(const Domain&) = delete;
   Domain& operator=(const Domain&) = delete;
@@ -61,12 +62,17 @@ class Domain {
 
   std::int32_t participant() const { return participant_; }
 
+  /// What Cyclone logs about this domain, and whose samples could not be decoded.
+  Reports& reports() { return reports_; }
+
  private:
   struct Known {
     Topic topic;
     const TypeSupport* type;
   };
 
+  Reports reports_;
+  CycloneLog log_;
   const std::atomic<Time::rep>* time_;
   std::int32_t domain_ = 0;
   std::int32_t participant_ = 0;

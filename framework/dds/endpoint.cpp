@@ -128,7 +128,8 @@ class ReaderCache {
     const bool dispose = sample->statusinfo & NN_STATUSINFO_DISPOSE;
     if ((sample->statusinfo & NN_STATUSINFO_UNREGISTER) && !dispose && sample->kind != SDK_DATA) return;
     hold(instance);
-    sink_.on_sample({as_block(sample), writer.iid, as_block(sample)->instance, writer.ownership_strength});
+    SampleBlock* const block = as_block(sample);
+    sink_.on_sample({block, writer.iid, block->instance, writer.ownership_strength, block->sequence});
     if (dispose) let_go(instance);
 #ifdef __SANITIZE_THREAD__
     // It does not look into Cyclone, which lets go of the sample for us, and has to be shown that we are done with it.
@@ -205,7 +206,9 @@ Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type
     static_cast<SampleSink*>(to)->on_status();
   });
   dds_lset_liveliness_changed(listener, [](dds_entity_t, dds_liveliness_changed_status_t status, void* to) {
-    if (status.not_alive_count_change > 0) static_cast<SampleSink*>(to)->on_writer_lost(status.last_publication_handle);
+    auto& sink_of_reader = *static_cast<SampleSink*>(to);
+    if (status.not_alive_count_change > 0) sink_of_reader.on_writer_lost(status.last_publication_handle);
+    if (status.alive_count_change > 0) sink_of_reader.on_writer_alive(status.last_publication_handle);
   });
   dds_lset_requested_incompatible_qos(listener, [](dds_entity_t, dds_requested_incompatible_qos_status_t, void* to) {
     static_cast<SampleSink*>(to)->on_status();
@@ -214,6 +217,7 @@ Reader::Reader(Domain& domain, const std::string& topic, const TypeSupport& type
   dds_delete_listener(listener);
   if (entity_ < 0)
     throw DdsError("cannot create a reader of " + topic + " (" + type.name + "): " + dds_strretcode(-entity_));
+  dds_get_instance_handle(entity_, &handle_);
 }
 
 Reader::~Reader() { dds_delete(entity_); }
@@ -292,6 +296,7 @@ void Writer::send(SampleBlock* block, Time now, std::int64_t timestamp, std::uin
   block->received = now;
   block->timestamp.v = timestamp;
   block->statusinfo = status;
+  block->sequence = ++sequence_;
   seal(block);
   if (const dds_return_t code = dds_forwardcdr(entity_, block); code < 0)
     throw DdsError(std::string("publishing ") + topic_.type->support->name + " failed: " + dds_strretcode(-code));

@@ -58,6 +58,7 @@ struct Arrival {
   std::uint64_t writer;    ///< Cyclone's instance handle of the writer
   std::uint64_t instance;  ///< the same for equal keys, in every process and run; 0 for keyless types
   std::int32_t strength;   ///< the writer's ownership strength
+  std::uint64_t sequence;  ///< number of the sample among its writer's, without gaps where it is published; 0: unknown
 };
 
 /// Told under Cyclone's locks, in whatever thread. It may only store and mark: no call back into DDS, no user code.
@@ -78,6 +79,8 @@ class SampleSink : public StatusSink {
   virtual void on_writer_gone(std::uint64_t writer) noexcept = 0;
   /// The writer was not alive for a whole lease; on_writer_gone() was called before.
   virtual void on_writer_lost(std::uint64_t writer) noexcept { (void)writer; }
+  /// A writer is alive, for the first time or again.
+  virtual void on_writer_alive(std::uint64_t writer) noexcept { (void)writer; }
 
  protected:
   ~SampleSink() = default;
@@ -94,6 +97,8 @@ class Reader {
   /// After this no call into the sink is under way or will come.
   ~Reader();
 
+  /// Cyclone's instance handle, as Discovery gives it.
+  std::uint64_t handle() const { return handle_; }
   EndpointStatus status() const;
 
   /// Who a writer is that is matched now; nothing if it is not, or none of ours. Not from a SampleSink's call.
@@ -103,6 +108,7 @@ class Reader {
 
  private:
   std::int32_t entity_ = 0;
+  std::uint64_t handle_ = 0;
 };
 
 class Writer {
@@ -141,6 +147,7 @@ class Writer {
   Domain::Topic topic_;
   std::int32_t entity_ = 0;
   std::uint64_t handle_ = 0;
+  std::uint64_t sequence_ = 0;  ///< of the sample published last
 };
 
 }  // namespace kervan::dds

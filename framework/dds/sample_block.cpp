@@ -1,5 +1,6 @@
 #include "framework/dds/sample_block.hpp"
 
+#include <dds/ddsi/q_protocol.h>
 #include <dds/ddsi/q_radmin.h>
 #include <dds/ddsrt/md5.h>
 
@@ -15,12 +16,14 @@
 
 #include "framework/component/sample.hpp"
 #include "framework/dds/cdr.hpp"
+#include "framework/dds/reports.hpp"
 #include "framework/dds/statistics.hpp"
 #include "framework/dds/wall_clock.hpp"
 
 namespace kervan::dds {
 
-// The functions that Cyclone calls are noexcept: no exception may cross its C frames, and without memory there is no way on.
+// The functions that Cyclone calls are noexcept: no exception may cross its C frames, and without memory there is no
+// way on.
 namespace {
 
 std::atomic<std::uint64_t> serialised{0};
@@ -35,8 +38,7 @@ std::size_t value_offset(const TypeSupport& support) {
 
 std::uint32_t cdr_size(const SampleBlock* block) {
   const TypeSupport& support = block->pool->support();
-  const std::size_t size =
-      block->kind == SDK_KEY ? support.cdr_key_size(block->value) : support.cdr_size(block->value);
+  const std::size_t size = block->kind == SDK_KEY ? support.cdr_key_size(block->value) : support.cdr_size(block->value);
   return static_cast<std::uint32_t>(cdr::encapsulation_size + size);
 }
 
@@ -84,16 +86,39 @@ Time arrival_time(const SampleType& type) noexcept {
   return type.time ? Time(Duration(type.time->load(std::memory_order_relaxed))) : wall_now();
 }
 
+/// Where a received sample comes from: its RTPS message, of which Cyclone has made the fields that are read here
+/// native.
+struct Origin {
+  Guid writer{};
+  std::uint64_t sequence = 0;
+};
+
+Origin origin_of(const nn_rdata* fragment) {
+  const auto* header = reinterpret_cast<const Header_t*>(NN_RMSG_PAYLOAD(fragment->rmsg));
+  const auto* data = reinterpret_cast<const Data_DataFrag_common_t*>(
+      NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_SUBMSG_OFF(fragment)));
+  Origin origin;
+  const std::uint32_t words[] = {header->guid_prefix.u[0], header->guid_prefix.u[1], header->guid_prefix.u[2],
+                                 data->writerId.u};
+  for (std::size_t i = 0; i < origin.writer.size(); ++i)
+    origin.writer[i] = static_cast<std::uint8_t>(words[i / 4] >> (24 - 8 * (i % 4)));
+  origin.sequence = static_cast<std::uint64_t>(data->writerSN.high) << 32 | data->writerSN.low;
+  return origin;
+}
+
 /// Decodes received bytes, the encapsulation header included, into a fresh block; nullptr if they are not a message.
-ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span<const std::byte> payload) noexcept {
+ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span<const std::byte> payload,
+                     const Origin& origin) noexcept {
   const auto* sample_type = static_cast<const SampleType*>(type);
   const TypeSupport& support = *sample_type->support;
   SampleBlock* block = sample_type->pool->get(type, kind);
   block->received = arrival_time(*sample_type);
+  block->sequence = origin.sequence;
   cdr::Reader reader = cdr::open(payload.data(), payload.size());
   const bool good = kind == SDK_KEY ? support.read_key(block->value, reader) : support.read_cdr(block->value, reader);
   if (!good) {
     refused.fetch_add(1, std::memory_order_relaxed);
+    sample_type->reports->add_undecodable(origin.writer);
     ddsi_serdata_unref(block);
     return nullptr;
   }
@@ -102,12 +127,14 @@ ddsi_serdata* decode(const ddsi_sertype* type, ddsi_serdata_kind kind, std::span
   return block;
 }
 
-ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment, std::size_t size) noexcept {
+ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
+                       std::size_t size) noexcept {
   // Fragments may overlap; the first one holds the whole header.
   const auto payload = [](const nn_rdata* f) {
     return reinterpret_cast<const std::byte*>(NN_RMSG_PAYLOADOFF(f->rmsg, NN_RDATA_PAYLOAD_OFF(f)));
   };
-  if (!fragment->nextfrag && fragment->maxp1 >= size) return decode(type, kind, {payload(fragment), size});
+  const Origin origin = origin_of(fragment);
+  if (!fragment->nextfrag && fragment->maxp1 >= size) return decode(type, kind, {payload(fragment), size}, origin);
   const std::unique_ptr<std::byte[]> bytes(new std::byte[size]);
   std::uint32_t have = 0;
   for (; fragment; fragment = fragment->nextfrag) {
@@ -116,7 +143,7 @@ ddsi_serdata* from_ser(const ddsi_sertype* type, ddsi_serdata_kind kind, const n
     std::memcpy(bytes.get() + have, payload(fragment) + have - fragment->min, end - have);
     have = end;
   }
-  return decode(type, kind, {bytes.get(), have});
+  return decode(type, kind, {bytes.get(), have}, origin);
 }
 
 ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind, ddsrt_msg_iovlen_t count,
@@ -128,7 +155,7 @@ ddsi_serdata* from_ser_iov(const ddsi_sertype* type, ddsi_serdata_kind kind, dds
     std::memcpy(bytes.get() + have, parts[i].iov_base, length);
     have += length;
   }
-  return decode(type, kind, {bytes.get(), have});
+  return decode(type, kind, {bytes.get(), have}, {});
 }
 
 ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) noexcept {
@@ -137,6 +164,7 @@ ddsi_serdata* from_keyhash(const ddsi_sertype* type, const ddsi_keyhash*) noexce
   const auto* sample_type = static_cast<const SampleType*>(type);
   SampleBlock* block = sample_type->pool->get(type, SDK_KEY);
   block->received = arrival_time(*sample_type);
+  block->sequence = 0;
   seal(block);
   return block;
 }
@@ -332,8 +360,7 @@ void BlockPool::put(SampleBlock* block) noexcept {
       sizeof(SampleBlock) + support_.size + support_.heap_bytes(block->value) + (spare ? spare->capacity : 0);
   lock();
   --outstanding_;
-  const bool keep =
-      !closed_ && (free_count_ < kAlwaysPooled || free_bytes_ + block->pooled_bytes <= kMaxPooledBytes);
+  const bool keep = !closed_ && (free_count_ < kAlwaysPooled || free_bytes_ + block->pooled_bytes <= kMaxPooledBytes);
   if (keep) {
     block->next_free = free_;
     free_ = block;
@@ -356,12 +383,13 @@ void BlockPool::close() noexcept {
   if (last) delete this;
 }
 
-SampleType* make_sample_type(const TypeSupport& support) {
+SampleType* make_sample_type(const TypeSupport& support, Reports& reports) {
   const auto* descriptor = static_cast<const dds_topic_descriptor_t*>(support.descriptor);
   auto type = std::make_unique<SampleType>();
   ddsi_sertype_init(type.get(), support.wire_name, &sertype_operations(), &serdata_operations(), !support.keyed);
   type->allowed_data_representation = DDS_DATA_REPRESENTATION_FLAG_XCDR1;
   type->support = &support;
+  type->reports = &reports;
   type->pool = new BlockPool(support);
   auto& description = type->description.type;
   description.flagset = descriptor->m_flagset;

@@ -1,5 +1,5 @@
-/// Private to framework/dds: one pooled block per sample. It is Cyclone's serdata, the receive stamp, the CDR made at most
-/// once and only for a remote reader, and the C++ value itself. Local readers get the block the publisher filled.
+/// Private to framework/dds: one pooled block per sample. It is Cyclone's serdata, the receive stamp, the CDR made at
+/// most once and only for a remote reader, and the C++ value itself. Local readers get the block the publisher filled.
 #pragma once
 
 #include <dds/dds.h>
@@ -19,6 +19,7 @@
 namespace kervan::dds {
 
 class BlockPool;
+class Reports;
 
 /// The prefix that sample blocks share with the key-only entries of Cyclone's instance map, so that keys compare alike.
 struct KeyedBlock : ddsi_serdata {
@@ -26,8 +27,8 @@ struct KeyedBlock : ddsi_serdata {
   std::string key;            ///< big-endian key as DDS prescribes for the key hash; empty for keyless types
 };
 
-/// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4. A long run of numbers, as an image has
-/// it, is not copied here but sent out of the value.
+/// Serialised form with its 4-byte encapsulation header, padded to a multiple of 4. A long run of numbers, as an image
+/// has it, is not copied here but sent out of the value.
 struct CdrBytes {
   std::size_t capacity;   ///< bytes behind this struct
   cdr::LongRun long_run;  ///< counted from data()
@@ -44,6 +45,7 @@ struct SampleBlock : KeyedBlock {
   std::size_t pooled_bytes = 0;  ///< what the block accounts for while it lies in the pool
   Time received{};               ///< on the composition's clock; the publishing time for a local sample
   std::uint64_t instance = 0;    ///< hash of the key, the same in every process; 0 for keyless types
+  std::uint64_t sequence = 0;    ///< given by the writer, from 1 on; 0 if not known
   void* value = nullptr;         ///< behind this struct, suitably aligned
 };
 
@@ -94,11 +96,12 @@ struct SampleType : ddsi_sertype {
   const TypeSupport* support = nullptr;
   BlockPool* pool = nullptr;
   const std::atomic<Time::rep>* time = nullptr;  ///< stamps what is received; nullptr: the wall clock does
-  ddsi_sertype_default description{};  ///< idlc's descriptor, the source of XTypes information
+  Reports* reports = nullptr;                    ///< of the domain
+  ddsi_sertype_default description{};            ///< idlc's descriptor, the source of XTypes information
 };
 
-/// Makes the (unregistered) Cyclone type of `support`.
-SampleType* make_sample_type(const TypeSupport& support);
+/// Makes the (unregistered) Cyclone type of `support`. `reports` are those of the domain.
+SampleType* make_sample_type(const TypeSupport& support, Reports& reports);
 
 /// Timestamps of assertions: a logical time, which is years at most, plus 2^30 seconds. The timestamp is the only thing
 /// beside the bytes that Cyclone carries unchanged to readers elsewhere, and no wall clock shows these years any more.

@@ -57,6 +57,7 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry)
   log_sinks_ = std::make_unique<LogSinks>(spec_.log_to_console,
                                           spec_.run_folder.empty() ? spec_.run_folder : spec_.run_folder / log_file,
                                           spec_.publish_log ? domain_.get() : nullptr);
+  log_ = log_sinks_->make("kervan/" + spec_.name, "info");
   status_writer_ = std::make_unique<StatusWriter>(*domain_);
   if (spec_.clock == ClockMode::lockstep) lockstep_ = std::make_unique<Lockstep>(*this, instant_, spec_.threads);
   // An endpoint's index counts those of all components before it, wherever they run.
@@ -91,7 +92,8 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry)
 /// It looks at the ports in a thread of its own, so none may go while it does.
 void Container::watch_anew() {
   watch_.reset();
-  watch_ = std::make_unique<Watch>(*this, bell_, [this] { hear_members(); });
+  watch_ = std::make_unique<Watch>(*this, members_.get(), bell_, [this] { hear_members(); });
+  if (expects_peers_) watch_->run_begins();
 }
 
 Slot Container::slot_of(const ComponentSpec& spec) const {
@@ -247,7 +249,7 @@ void Container::publish_status(ComponentInstance& instance) {
 
 void Container::publish_changed_statuses() {
   for (const auto& instance : instances_)
-    if (instance->take_status_changed()) publish_status(*instance);
+    if (instance->take_status_due(instant_.time)) publish_status(*instance);
 }
 
 std::shared_ptr<spdlog::logger> Container::make_logger(const ComponentSpec& spec) {
@@ -292,9 +294,13 @@ RunReport Container::run(const RunControl& control) {
     report = *no_time;
   } else {
     activate();
+    expects_peers_ = true;
+    if (watch_) watch_->run_begins();
     if (members_) members_->publish(kervan_msgs::msg::ContainerPhase::CONTAINER_ACTIVE, {}, instant_.time);
     if (control.phase) control.phase(RunPhase::active);
     report = lockstep_ ? lockstep_->run(control) : run_dispatchers(control);
+    expects_peers_ = false;
+    if (watch_) watch_->run_ends();
     end();
   }
   // Neither a limit of time nor an interruption of this container ends the others' runs.

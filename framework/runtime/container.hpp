@@ -118,6 +118,7 @@ class Container {
   unsigned writer_index(const InputPort& port, std::uint64_t handle);
   void publish_status(ComponentInstance& instance);
   std::shared_ptr<spdlog::logger> make_logger(const ComponentSpec& spec);
+  spdlog::logger& log() const { return *log_; }
 
  private:
   friend class Operations;
@@ -157,6 +158,7 @@ class Container {
   Time started_{};
   std::unique_ptr<dds::Domain> domain_;
   std::unique_ptr<LogSinks> log_sinks_;
+  std::shared_ptr<spdlog::logger> log_;  ///< of the container itself
   std::unique_ptr<StatusWriter> status_writer_;
   Bell bell_;
   std::unique_ptr<Members> members_;  ///< not under lockstep, nor in a composition of one container
@@ -166,6 +168,7 @@ class Container {
   std::map<unsigned, std::pair<std::uint64_t, std::uint64_t>> departed_traces_;  ///< writer -> sequence and trace
   std::vector<std::unique_ptr<ComponentInstance>> instances_;  ///< by index; only the thread in run() changes it
   std::unique_ptr<Watch> watch_;                               ///< not under lockstep
+  bool expects_peers_ = false;                                 ///< the run is on: a missing peer is a trouble
   std::vector<std::unique_ptr<Dispatcher>> dispatchers_;       ///< the first is everybody's; others serve one component
   Activity* activity_ = nullptr;  ///< of the run that is under way, if simulated time is run here
   std::unique_ptr<Operations> operations_;

@@ -137,7 +137,7 @@ void Dispatcher::run_one(ComponentInstance& instance) {
   instance.stage(now);  // first: what has arrived in time has not missed its deadline
   instance.run_due({now, 0});
   instance.run_inputs({now, 0});
-  if (instance.take_status_changed()) instance.container().publish_status(instance);
+  if (instance.take_status_due(now)) instance.container().publish_status(instance);
   schedule(instance);
   instance.entered.store(0, std::memory_order_relaxed);
   int state = kRunning;

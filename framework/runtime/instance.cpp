@@ -16,6 +16,9 @@ namespace kervan::runtime {
 
 namespace {
 
+/// Counters are told at most this often.
+constexpr Duration kStatusPeriod = std::chrono::seconds(1);
+
 /// The composition's binding of a port, or the one its declaration implies.
 PortBinding binding_of(const ComponentSpec& spec, const PortInfo& port) {
   for (const PortBinding& binding : spec.ports)
@@ -141,7 +144,7 @@ Time ComponentInstance::next_due() const {
 void ComponentInstance::run_due(Instant now) {
   if (!running()) return;
   for (const auto& input : inputs_)
-    if (input->cache().next_deadline() <= now.time && input->cache().check_deadlines(now.time)) status_changed_ = true;
+    if (input->cache().next_deadline() <= now.time) input->cache().check_deadlines(now.time);
   for (TimerState& timer : timers_) {
     if (timer.due > now.time || !running()) continue;
     const Duration period = timer.timer->period();
@@ -163,6 +166,24 @@ void ComponentInstance::run_inputs(Instant now) {
     if (input->has_handler() && input->cache().has_fresh())
       guarded(input->binding().port.c_str(), now, [&] { input->deliver(now.time); });
   }
+}
+
+bool ComponentInstance::take_status_due(Time now) {
+  if (!status_changed_.exchange(false)) {
+    if (now - status_published_ < kStatusPeriod) return false;
+    const bool counted =
+        !std::ranges::equal(inputs_, counters_published_, {}, [](const auto& i) { return i->counters(); });
+    if (!counted) return false;
+  }
+  status_published_ = now;
+  counters_published_.clear();
+  for (const auto& input : inputs_) counters_published_.push_back(input->counters());
+  return true;
+}
+
+void ComponentInstance::touch_status() noexcept {
+  status_changed_ = true;
+  notify();
 }
 
 void ComponentInstance::notify() noexcept {

@@ -68,8 +68,11 @@ class ComponentInstance {
   /// Calls the handlers of all ports that have fresh samples, in order of declaration.
   void run_inputs(Instant now);
 
-  /// True once after the state or its reason changed.
-  bool take_status_changed() { return status_changed_.exchange(false); }
+  /// Whether a status is to be published now: the state, its reason or a trouble changed, or a counter did and the last
+  /// status is a second old.
+  bool take_status_due(Time now);
+  /// Something that its status tells has changed; from any thread.
+  void touch_status() noexcept;
 
   // Scheduling under the wall clock; see Dispatcher.
   void notify() noexcept;
@@ -102,6 +105,8 @@ class ComponentInstance {
   std::vector<std::unique_ptr<InputPort>> inputs_;
   std::vector<TimerState> timers_;
   std::atomic<bool> status_changed_{false};
+  Time status_published_{};
+  std::vector<PortCounters> counters_published_;  ///< of the inputs
 };
 
 }  // namespace kervan::runtime

@@ -18,8 +18,12 @@ using kervan_msgs::msg::ContainerStatus;
 /// How long the end of a run may wait for containers that have not heard of it.
 constexpr Duration kPatience = std::chrono::milliseconds(500);
 
+/// The lease is what a process that died or stopped is noticed by.
 QosProfile members_profile() {
-  return {.name = "containers", .durability = Durability::transient_local, .trace = false};
+  return {.name = "containers",
+          .durability = Durability::transient_local,
+          .lease = std::chrono::milliseconds(1500),
+          .trace = false};
 }
 
 std::string host_name() {
@@ -81,11 +85,20 @@ void Members::publish(kervan_msgs::msg::ContainerPhase phase, const std::string&
 
 void Members::wait_until_heard() const { writer_.wait_for_acknowledgement(kPatience); }
 
-std::map<std::string, ContainerStatus> Members::others() const {
-  std::map<std::string, ContainerStatus> others;
+std::map<std::string, Members::Other> Members::others() const {
+  std::map<std::string, Other> others;
   const std::lock_guard lock(mutex_);
-  for (const auto& [name, heard] : heard_) others.emplace(name, heard.status);
+  for (const auto& [name, heard] : heard_) others.emplace(name, heard.other);
   return others;
+}
+
+void Members::set_answers(std::uint64_t writer, bool answers) noexcept {
+  {
+    const std::lock_guard lock(mutex_);
+    for (auto& [name, heard] : heard_)
+      if (heard.writer == writer) heard.other.answers = answers;
+  }
+  changed_();
 }
 
 void Members::on_sample(const dds::Arrival& arrival) noexcept {
@@ -93,7 +106,7 @@ void Members::on_sample(const dds::Arrival& arrival) noexcept {
   const auto& status = *static_cast<const ContainerStatus*>(dds::value_of(arrival.block));
   {
     const std::lock_guard lock(mutex_);
-    heard_.insert_or_assign(status.container, Heard{arrival.writer, status});
+    heard_.insert_or_assign(status.container, Heard{arrival.writer, {status}});
   }
   changed_();
 }

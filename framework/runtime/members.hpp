@@ -32,21 +32,29 @@ class Members final : public dds::SampleSink {
   /// Waits until all others have heard it, but not for one that does not answer.
   void wait_until_heard() const;
 
-  /// The latest word of every other container that is there, members or not, by name.
-  std::map<std::string, kervan_msgs::msg::ContainerStatus> others() const;
+  struct Other {
+    kervan_msgs::msg::ContainerStatus status;  ///< the latest
+    bool answers = true;                       ///< false: its process was silent for longer than it promised
+  };
+  /// Every other container that is there, members or not, by name.
+  std::map<std::string, Other> others() const;
 
   /// Hash of what this container's composition consists of.
   std::uint64_t composition() const { return own_.composition; }
 
   void on_sample(const dds::Arrival& arrival) noexcept override;
   void on_writer_gone(std::uint64_t writer) noexcept override;
+  void on_writer_lost(std::uint64_t writer) noexcept override { set_answers(writer, false); }
+  void on_writer_alive(std::uint64_t writer) noexcept override { set_answers(writer, true); }
   void on_status() noexcept override {}
 
  private:
   struct Heard {
     std::uint64_t writer;
-    kervan_msgs::msg::ContainerStatus status;
+    Other other;
   };
+
+  void set_answers(std::uint64_t writer, bool answers) noexcept;
 
   std::function<void()> changed_;
   kervan_msgs::msg::ContainerStatus own_;

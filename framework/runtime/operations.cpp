@@ -112,7 +112,7 @@ void Operations::hold(ComponentInstance& instance) {
 
 void Operations::release(ComponentInstance& instance) {
   if (Dispatcher* const dispatcher = instance.dispatcher.load()) dispatcher->release(instance);
-  if (instance.take_status_changed()) container_.publish_status(instance);
+  if (instance.take_status_due(container_.present().time)) container_.publish_status(instance);
 }
 
 /// Peers in lockstep know each other's writers and readers, and wait for exactly these.
@@ -255,7 +255,7 @@ Outcome Operations::load(const ComponentSpec& wanted) {
     else
       container_.spec_.loaded.push_back(std::move(spec));
     // Before a thread may be in it: afterwards the component publishes its status itself.
-    if (instance->take_status_changed()) container_.publish_status(*instance);
+    if (instance->take_status_due(container_.present().time)) container_.publish_status(*instance);
     container_.attach(*instance);
     return "";
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <mutex>
 #include <string>
 #include <utility>
@@ -20,6 +21,10 @@ class PortHealth {
     const std::lock_guard lock(mutex_);
     return trouble_;
   }
+  /// Samples of its peers that were no message of its type, so far.
+  std::uint64_t undecodable() const { return undecodable_.load(std::memory_order_relaxed); }
+  void add_undecodable(std::uint64_t count) { undecodable_.fetch_add(count, std::memory_order_relaxed); }
+
   /// True if that is news.
   bool set_trouble(std::string trouble) {
     const std::lock_guard lock(mutex_);
@@ -30,6 +35,7 @@ class PortHealth {
 
  private:
   std::atomic<bool> changed_{true};
+  std::atomic<std::uint64_t> undecodable_{0};
   mutable std::mutex mutex_;
   std::string trouble_;
 };

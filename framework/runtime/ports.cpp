@@ -22,6 +22,9 @@ std::size_t inbox_limit(ClockMode clock, const QosProfile& profile, bool keyed) 
   return static_cast<std::size_t>(keyed || profile.depth == 0 ? kMostKept : profile.depth + 64);
 }
 
+/// In this time after its first sample a writer's history has reached a late joiner.
+constexpr Duration kHistoryComes = std::chrono::seconds(2);
+
 dds::CyclonePart part_of(ClockMode clock) {
   switch (clock) {
     case ClockMode::wall: return dds::CyclonePart::whole_profile;
@@ -60,6 +63,7 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
   dds::retain(arrival.block);
   dds::SampleBlock* overflow = nullptr;
   lock();
+  count_gap(arrival);
   if (inbox_.size() - inbox_first_ >= inbox_limit_ && binding_.profile.limit > 0) {
     // The profile says that what waits already counts more than what comes.
     ++overflowed_;
@@ -86,9 +90,26 @@ void InputPort::on_sample(const dds::Arrival& arrival) noexcept {
   if (last_awaited) last_awaited->done();
 }
 
+/// Under spin_.
+void InputPort::count_gap(const dds::Arrival& arrival) {
+  if (arrival.sequence == 0) return;
+  const auto known = std::ranges::find(sequences_, arrival.writer, &Sequence::writer);
+  if (known == sequences_.end()) {
+    sequences_.push_back({arrival.writer, arrival.sequence, dds::received_at(arrival.block)});
+    return;
+  }
+  const bool gap = arrival.sequence > known->last + 1;
+  // What a writer kept for late joiners has gaps where newer samples took the place of older ones.
+  const bool history = gap && binding_.profile.durability == Durability::transient_local &&
+                       dds::received_at(arrival.block) - known->since < kHistoryComes;
+  if (gap && !history) gaps_ += arrival.sequence - known->last - 1;
+  known->last = std::max(known->last, arrival.sequence);
+}
+
 void InputPort::on_writer_gone(std::uint64_t writer) noexcept {
   lock();
   gone_.push_back(writer);
+  std::erase_if(sequences_, [&](const Sequence& sequence) { return sequence.writer == writer; });
   unlock();
   mark_ready();
 }
@@ -139,7 +160,11 @@ PortCounters InputPort::counters() const {
   PortCounters counters = cache_.counters();
   lock();
   counters.refused += overflowed_;
+  counters.lost = gaps_;
   unlock();
+  counters.undecodable = health_.undecodable();
+  counters.late = late_;
+  counters.worst_latency = worst_latency_;
   return counters;
 }
 
@@ -182,11 +207,18 @@ void InputPort::stage(Time now) {
 
 void InputPort::deliver(Time now) {
   if (!input_.deliver_) return;
-  while (dds::SampleBlock* block = cache_.take(now)) {
+  const bool logical = clock_ == ClockMode::lockstep;
+  for (bool first = true; dds::SampleBlock* block = cache_.take(now); first = false) {
     struct Release {
       dds::SampleBlock* block;
       ~Release() { dds::release(block); }
     } const release{block};
+    // The first handler begins now, the next ones when those before them are done. Logical time stands still meanwhile,
+    // and what it stages is received at the time of staging.
+    const Duration latency =
+        logical ? Duration::zero() : (first ? now : owner_.container().clock().now()) - dds::received_at(block);
+    worst_latency_ = std::max(worst_latency_, latency);
+    if (latency > input_.info().qos.max_age()) ++late_;
     input_.deliver_(block, now);
   }
 }

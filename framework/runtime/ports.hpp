@@ -74,6 +74,7 @@ class InputPort final : public dds::SampleSink {
   void on_status() noexcept override;
 
  private:
+  void count_gap(const dds::Arrival& arrival);
   void lock() const noexcept {
     while (spin_.test_and_set(std::memory_order_acquire)) {
     }
@@ -82,6 +83,13 @@ class InputPort final : public dds::SampleSink {
 
   void mark_ready() noexcept;
   unsigned writer_of(const dds::Arrival& arrival) const;
+
+  /// What has been received of one writer.
+  struct Sequence {
+    std::uint64_t writer;
+    std::uint64_t last;
+    Time since;  ///< when the first sample was received
+  };
 
   InputBase& input_;
   PortBinding binding_;
@@ -95,6 +103,8 @@ class InputPort final : public dds::SampleSink {
   std::size_t inbox_first_ = 0;           ///< under spin_: what stood before it was dropped
   std::vector<std::uint64_t> gone_;       ///< under spin_: writers that left
   std::vector<std::uint64_t> lost_;       ///< under spin_: writers that were not alive for a lease
+  std::vector<Sequence> sequences_;       ///< under spin_: by writer
+  std::uint64_t gaps_ = 0;                ///< under spin_: samples that writers published and that never came
   std::uint64_t overflowed_ = 0;          ///< under spin_: dropped because the component did not run
   std::vector<dds::Arrival> arrived_;     ///< scratch of stage(), swapped with inbox_
   std::vector<dds::Arrival> early_;       ///< arrived from a container that is one cycle ahead; its blocks are retained
@@ -102,6 +112,8 @@ class InputPort final : public dds::SampleSink {
   Countdown* arrivals_ = nullptr;         ///< under spin_
   std::vector<StagedSample> staged_;      ///< scratch of stage()
   std::vector<dds::SampleBlock*> given_;  ///< taken by the component, kept alive until it takes again
+  std::uint64_t late_ = 0;                ///< handled although older than the largest age
+  Duration worst_latency_{};              ///< from receipt to handler
   std::atomic<bool> ready_{false};
   PortHealth health_;
   std::unique_ptr<dds::Reader> reader_;  ///< last: it calls into the members above
@@ -118,6 +130,7 @@ class OutputPort final : public dds::StatusSink {
   const std::string& name() const { return output_.name(); }
   const TypeSupport& type() const { return output_.type(); }
   const PortBinding& binding() const { return binding_; }
+  ComponentInstance& owner() { return owner_; }
   unsigned index() const { return index_; }  ///< of the writer, in the whole composition
   const dds::Writer& writer() const { return writer_; }
   std::vector<dds::MatchedPeer> matched() const { return writer_.matched_readers(); }

@@ -27,11 +27,12 @@ constexpr Duration kGrace = std::chrono::seconds(2);
 constexpr std::size_t kMostTold = 4;
 
 /// Why the container `name` holds up the start; empty if it does not.
-std::string what_is_missing(const std::string& name, const std::map<std::string, ContainerStatus>& others,
+std::string what_is_missing(const std::string& name, const std::map<std::string, Members::Other>& others,
                             std::uint64_t composition) {
   const auto found = others.find(name);
   if (found == others.end()) return "container '" + name + "' is not there";
-  const ContainerStatus& other = found->second;
+  if (!found->second.answers) return "container '" + name + "' does not answer";
+  const ContainerStatus& other = found->second.status;
   if (other.composition != composition)
     return "container '" + name + "' (pid " + std::to_string(other.pid) + " on " + other.host +
            ") runs another composition: start it from the same file";
@@ -58,10 +59,10 @@ std::string enumerated(const std::vector<std::string>& parts) {
 /// Runs in the watch's thread.
 void Container::hear_members() {
   if (!members_) return;
-  for (const auto& [name, status] : members_->others())
-    if (status.phase == ContainerPhase::CONTAINER_FINISHED && status.composition == members_->composition() &&
-        std::ranges::count(spec_.members, name) > 0)
-      request_finish(~0U, status.reason);  // after any component of this container
+  for (const auto& [name, other] : members_->others())
+    if (other.status.phase == ContainerPhase::CONTAINER_FINISHED &&
+        other.status.composition == members_->composition() && std::ranges::count(spec_.members, name) > 0)
+      request_finish(~0U, other.status.reason);  // after any component of this container
 }
 
 std::optional<RunReport> Container::wait_for_peers(const RunControl& control) {
@@ -72,7 +73,6 @@ std::optional<RunReport> Container::wait_for_peers(const RunControl& control) {
     reached(RunPhase::matched);
     return std::nullopt;
   }
-  const auto log = log_sinks_->make("kervan/" + spec_.name, "info");
   members_->publish(ContainerPhase::CONTAINER_STARTING, {}, dds::wall_now());
   const Clock::time_point start = Clock::now();
   Clock::time_point tell = start + kTellPeriod;
@@ -96,15 +96,15 @@ std::optional<RunReport> Container::wait_for_peers(const RunControl& control) {
     const Clock::time_point now = Clock::now();
     const LogTime log_time(dds::wall_now());
     if (!runs_since && std::ranges::any_of(others, [](const auto& other) {
-          return other.second.phase == ContainerPhase::CONTAINER_ACTIVE;
+          return other.second.answers && other.second.status.phase == ContainerPhase::CONTAINER_ACTIVE;
         }))
       runs_since = now;
     if (runs_since && now - *runs_since >= kGrace) {
-      log->warn("the others are running, so this container becomes active too, although: {}", enumerated(missing));
+      log_->warn("the others are running, so this container becomes active too, although: {}", enumerated(missing));
       return std::nullopt;
     }
     if (now >= tell) {
-      log->warn("waiting for {:.0f} s: {}", std::chrono::duration<double>(now - start).count(), enumerated(missing));
+      log_->warn("waiting for {:.0f} s: {}", std::chrono::duration<double>(now - start).count(), enumerated(missing));
       tell += kTellPeriod;
     }
     if (const auto wish = finish_wish()) return RunReport{.end = wish->end, .reason = wish->reason};

@@ -35,6 +35,12 @@ struct PortCounters {
   std::uint64_t not_owner = 0;        ///< from a writer that did not own the instance
   std::uint64_t deadline_missed = 0;  ///< periods of the deadline without a sample
   std::uint64_t liveliness_lost = 0;  ///< times that a writer was not alive for a whole lease
+  std::uint64_t late = 0;             ///< handled although older than the port's largest age
+  std::uint64_t lost = 0;             ///< published by a matched writer, but never received: gaps in its sequence
+  std::uint64_t undecodable = 0;      ///< received, but no message of the port's type
+  Duration worst_latency{};           ///< longest time from receipt to the beginning of the handler
+
+  bool operator==(const PortCounters&) const = default;
 };
 
 class SampleCache {

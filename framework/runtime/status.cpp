@@ -57,6 +57,20 @@ void StatusWriter::publish(const ComponentInstance& instance, const std::string&
     port.refused = counters.refused;
     port.not_owner = counters.not_owner;
     port.deadline_missed = counters.deadline_missed;
+    port.liveliness_lost = counters.liveliness_lost;
+    port.late = counters.late;
+    port.lost = counters.lost;
+    port.undecodable = counters.undecodable;
+    port.worst_latency = seconds(counters.worst_latency);
+    port.trouble = input->health().trouble();
+  }
+  for (const auto& output : instance.outputs()) {
+    auto& port = message.ports.emplace_back();
+    port.name = output->name();
+    port.topic = output->binding().topic;
+    port.output = true;
+    port.published = output->published();
+    port.trouble = output->health().trouble();
   }
   writer_.publish(block, now, dispose);
 }

@@ -369,6 +369,7 @@ int run_peer(const std::vector<std::string>& arguments) {
   if (role == "c-read") return c_peer_read(&options);
   if (role == "c-write") return c_peer_write(&options);
   if (role == "c-write-short") return c_peer_write_short(&options);
+  if (role == "c-write-other") return c_peer_write_other(&options);
   if (role == "kervan-read-scans")
     return kervan_read(network, "/scan", type_support<LaserScan>(), profile, text_of_scan);
   if (role == "kervan-read-requests")

@@ -9,23 +9,6 @@
 
 namespace kervan::test {
 
-namespace {
-
-/// How long a test waits for something that is sure to come, however slow the machine is.
-constexpr std::chrono::seconds kPatience{45};
-constexpr std::chrono::milliseconds kBetweenLooks{5};
-
-}  // namespace
-
-bool eventually(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + kPatience;
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) return false;
-    std::this_thread::sleep_for(kBetweenLooks);
-  }
-  return true;
-}
-
 Composition::Composition(std::vector<std::string> containers) {
   static std::atomic<int> compositions{0};
   const std::string name = "kervan_test-" + std::to_string(getpid()) + "-" + std::to_string(++compositions);
@@ -92,7 +75,8 @@ runtime::RunReport Running::report() {
 }
 
 std::string Running::log() const {
-  std::ifstream stream(container_.spec().run_folder / ("log-" + container_.spec().name + ".txt"));
+  const runtime::ContainerSpec& spec = container_.spec();
+  std::ifstream stream(spec.run_folder / (spec.members.size() > 1 ? "log-" + spec.name + ".txt" : "log.txt"));
   std::ostringstream text;
   text << stream.rdbuf();
   return text.str();

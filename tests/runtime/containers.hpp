@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "framework/runtime/container.hpp"
+#include "tests/program/eventually.hpp"
 
 namespace kervan::test {
-
-/// Asks again and again until the answer is yes; false if it has not become so with all patience.
-bool eventually(const std::function<bool()>& condition);
 
 /// A composition whose containers meet on a network of their own.
 class Composition {

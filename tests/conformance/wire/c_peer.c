@@ -50,20 +50,22 @@ static bool same(const scan_t *a, const scan_t *b) {
          same_sequence(&a->intensities, &b->intensities);
 }
 
+static const char *const wire_name = "sensor_msgs::msg::dds_::LaserScan_";
+
 typedef struct endpoint {
   dds_entity_t domain, participant, entity;
 } endpoint_t;
 
-/* The type's descriptor under the wire name, with or without XTypes information. */
-static dds_topic_descriptor_t descriptor_of(const dds_topic_descriptor_t *type, bool type_information) {
-  const dds_topic_descriptor_t *full = &sensor_msgs_msg_dds__LaserScan__desc;
+/* The type's descriptor under another name, with or without XTypes information. */
+static dds_topic_descriptor_t descriptor_of(const dds_topic_descriptor_t *type, const char *name,
+                                            bool type_information) {
   const struct dds_type_meta_ser none = {NULL, 0};
   const dds_topic_descriptor_t descriptor = {
       .m_size = type->m_size,
       .m_align = type->m_align,
       .m_flagset = type_information ? type->m_flagset : type->m_flagset & ~DDS_TOPIC_XTYPES_METADATA,
       .m_nkeys = type->m_nkeys,
-      .m_typename = full->m_typename,
+      .m_typename = name,
       .m_keys = type->m_keys,
       .m_nops = type->m_nops,
       .m_ops = type->m_ops,
@@ -76,7 +78,7 @@ static dds_topic_descriptor_t descriptor_of(const dds_topic_descriptor_t *type, 
 }
 
 static bool open_endpoint(endpoint_t *endpoint, const c_peer_options_t *options, const dds_topic_descriptor_t *type,
-                          bool reader) {
+                          const char *name, bool reader) {
   char configuration[512];
   snprintf(configuration, sizeof configuration,
            "<General><Interfaces><NetworkInterface name=\"lo\" multicast=\"true\"/></Interfaces></General>"
@@ -85,7 +87,7 @@ static bool open_endpoint(endpoint_t *endpoint, const c_peer_options_t *options,
            options->tag);
   endpoint->domain = dds_create_domain(options->domain, configuration);
   endpoint->participant = dds_create_participant(options->domain, NULL, NULL);
-  const dds_topic_descriptor_t descriptor = descriptor_of(type, options->type_information);
+  const dds_topic_descriptor_t descriptor = descriptor_of(type, name, options->type_information);
   const dds_entity_t topic = dds_create_topic(endpoint->participant, &descriptor, "rt/scan", NULL, NULL);
   dds_qos_t *qos = dds_create_qos();
   dds_qset_reliability(qos, options->reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT, DDS_INFINITY);
@@ -117,7 +119,7 @@ static void say_ready_once(bool *said, bool matched) {
 
 int c_peer_read(const c_peer_options_t *options) {
   endpoint_t endpoint;
-  if (!open_endpoint(&endpoint, options, &sensor_msgs_msg_dds__LaserScan__desc, true)) return 1;
+  if (!open_endpoint(&endpoint, options, &sensor_msgs_msg_dds__LaserScan__desc, wire_name, true)) return 1;
   bool ready = false;
   while (c_peer_wanted()) {
     dds_subscription_matched_status_t matched;
@@ -152,7 +154,7 @@ static bool wait_for_a_reader(dds_entity_t writer) {
 
 int c_peer_write(const c_peer_options_t *options) {
   endpoint_t endpoint;
-  if (!open_endpoint(&endpoint, options, &sensor_msgs_msg_dds__LaserScan__desc, false)) return 1;
+  if (!open_endpoint(&endpoint, options, &sensor_msgs_msg_dds__LaserScan__desc, wire_name, false)) return 1;
   if (!wait_for_a_reader(endpoint.entity)) return 1;
   for (int n = 1;; ++n) {
     if (n > options->count) {
@@ -170,7 +172,7 @@ int c_peer_write(const c_peer_options_t *options) {
 
 int c_peer_write_short(const c_peer_options_t *options) {
   endpoint_t endpoint;
-  if (!open_endpoint(&endpoint, options, &wire_test_ShortScan_desc, false)) return 1;
+  if (!open_endpoint(&endpoint, options, &wire_test_ShortScan_desc, wire_name, false)) return 1;
   if (!wait_for_a_reader(endpoint.entity)) return 1;
   for (int n = 1; n <= options->count; ++n) {
     const wire_test_ShortScan scan = {.header = {.stamp = {.sec = n}, .frame_id = (char *)"r1/laser"}};
@@ -178,6 +180,15 @@ int c_peer_write_short(const c_peer_options_t *options) {
   }
   if (options->reliable && dds_wait_for_acks(endpoint.entity, DDS_SECS(30)) == DDS_RETCODE_OK) puts("acknowledged");
   fflush(stdout);
+  while (c_peer_wanted()) {
+  }
+  return dds_delete(endpoint.domain) == DDS_RETCODE_OK ? 0 : 1;
+}
+
+int c_peer_write_other(const c_peer_options_t *options) {
+  endpoint_t endpoint;
+  const dds_topic_descriptor_t *type = &wire_test_ShortScan_desc;
+  if (!open_endpoint(&endpoint, options, type, type->m_typename, false)) return 1;
   while (c_peer_wanted()) {
   }
   return dds_delete(endpoint.domain) == DDS_RETCODE_OK ? 0 : 1;

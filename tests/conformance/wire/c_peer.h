@@ -32,6 +32,9 @@ int c_peer_write(const c_peer_options_t *options);
 /* Writes `count` samples of another, shorter layout under the same type name; says "acknowledged" when they are. */
 int c_peer_write_short(const c_peer_options_t *options);
 
+/* Offers samples of that layout under a type name of its own; nobody can be matched. */
+int c_peer_write_other(const c_peer_options_t *options);
+
 #ifdef __cplusplus
 }
 #endif

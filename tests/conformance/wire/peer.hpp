@@ -9,10 +9,9 @@
 #include <string>
 #include <vector>
 
-namespace kervan::test {
+#include "tests/program/eventually.hpp"
 
-/// How long a test waits for something that is sure to come, however slow the machine is.
-inline constexpr std::chrono::seconds kPatience{45};
+namespace kervan::test {
 
 class Peer {
  public:
@@ -22,6 +21,10 @@ class Peer {
   Peer& operator=(const Peer&) = delete;
   ~Peer();
 
+  pid_t pid() const { return pid_; }
+
+  /// Gives it a line on its stdin.
+  void tell(const std::string& line);
   /// The lines it has said so far.
   const std::vector<std::string>& lines();
   bool has_said(const std::string& line);
@@ -40,8 +43,5 @@ class Peer {
   std::string unfinished_;
   std::vector<std::string> lines_;
 };
-
-/// Asks again and again until the answer is yes; false if it has not become so with all patience.
-bool eventually(const std::function<bool()>& condition);
 
 }  // namespace kervan::test

@@ -255,7 +255,7 @@ TEST(Json, NamesEnumeratorsAndReplacesWhatIsNoText) {
   const std::string json = json_of(status);
   EXPECT_NE(json.find("\"component\":\"a\xef\xbf\xbd\xc3\xa4\xef\xbf\xbd\xef\xbf\xbd\""), std::string::npos) << json;
   EXPECT_NE(json.find("\"state\":\"COMPONENT_FAILED\""), std::string::npos) << json;
-  EXPECT_NE(json.find("\"ports\":[{\"name\":\"\",\"topic\":\"\",\"received\":0,"), std::string::npos) << json;
+  EXPECT_NE(json.find("\"ports\":[{\"name\":\"\",\"topic\":\"\",\"output\":false,"), std::string::npos) << json;
 }
 
 }  // namespace
