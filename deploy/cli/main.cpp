@@ -12,7 +12,7 @@ using namespace kervan;
 
 namespace {
 
-const std::vector<std::string> verbs = {"run", "check", "describe"};
+const std::vector<std::string> verbs = {"run", "check", "describe", "container"};
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
@@ -39,6 +39,71 @@ void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
   verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
 }
 
+/// `kervan container`: one subcommand for each thing that can be asked.
+void add_container(CLI::App& verb, cli::ContainerAsk& ask) {
+  verb.require_subcommand(1);
+  const auto add = [&](const char* name, const char* help) {
+    CLI::App* asked = verb.add_subcommand(name, help);
+    asked->add_option("--run", ask.run, "folder of the run; else the newest one that is not over")
+        ->check(not_empty)
+        ->type_name("DIR");
+    asked->add_option("--runs", ask.runs_folder, "folder that holds the runs")
+        ->capture_default_str()
+        ->check(not_empty)
+        ->type_name("DIR");
+    asked->add_option("--domain", ask.domain, "DDS domain to ask in, instead of that of a run")
+        ->check(not_empty)
+        ->type_name("ID")
+        ->excludes("--run");
+    asked->add_option("--interface", ask.interface, "network interface, with --domain")
+        ->capture_default_str()
+        ->check(not_empty)
+        ->needs("--domain");
+    asked->add_option("--tag", ask.tag, "tag of the run, with --domain")->check(not_empty)->needs("--domain");
+    asked->add_option("--timeout", ask.timeout, "how long to wait for the answer")
+        ->capture_default_str()
+        ->check(not_empty)
+        ->type_name("TIME");
+    asked->add_flag("--json", ask.json, "print the answer as one JSON object");
+    asked->callback([&ask, name] { ask.verb = name; });
+    return asked;
+  };
+  const auto of_container = [&](CLI::App* asked) {
+    asked->add_option("container", ask.container, "as the composition names it")->type_name("CONTAINER")->required();
+    return asked;
+  };
+  const auto of_component = [&](CLI::App* asked, bool required = true) {
+    of_container(asked)
+        ->add_option("component", ask.component, "its full name, such as r1/control")
+        ->type_name("COMPONENT")
+        ->required(required);
+    return asked;
+  };
+  add("list", "The containers of a run.");
+  of_component(add("state", "How the components of a container are, or one of them."), false);
+  CLI::App* load = of_component(add("load", "Load and activate a component."));
+  load->add_option("type", ask.type, "such as control/potential_field; the composition's own need none")
+      ->type_name("TYPE");
+  load->add_option("--param", ask.parameters, "value of a parameter; may be repeated")
+      ->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  load->add_option("--port", ask.ports, "topic of a port; may be repeated")
+      ->type_name("PORT=/TOPIC")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  load->add_option("--log", ask.log_level, "level of its log: trace, debug, info, warn, error or off")
+      ->type_name("LEVEL");
+  of_component(add("unload", "Unload a component, after its last words."));
+  of_component(add("activate", "Let a component run that was deactivated."));
+  of_component(add("deactivate", "Stop a component, after its last words; it stays loaded."));
+  of_component(add("set", "Give live parameters new values, all of them or none."))
+      ->add_option("values", ask.parameters, "such as speed=\"0.4 m/s\"")
+      ->type_name("NAME=VALUE")
+      ->required();
+  of_component(add("snapshot", "All parameters of a container's components, or of one."), false);
+}
+
 /// The reason on stderr, and with --json also as an object on stdout, so that a script never has to read prose.
 int refuse(const ConfigError& error, bool json) {
   std::cerr << error.what() << std::endl;
@@ -57,6 +122,10 @@ int refuse(const ConfigError& error, bool json) {
 std::string reason(const CLI::ParseError& error, const CLI::App& app) {
   if (dynamic_cast<const CLI::RequiredError*>(&error) == nullptr) return error.what();
   if (app.get_subcommands().empty()) return "a command is missing: " + config::joined(verbs);
+  if (app.got_subcommand("container"))
+    return app.get_subcommand("container")->get_subcommands().empty()
+               ? "what to ask is missing: list, state, load, unload, activate, deactivate, set or snapshot"
+               : error.what();
   return "a composition is missing; name a shipped one, such as lab, or a file";
 }
 
@@ -102,6 +171,10 @@ int dispatch(int argc, char** argv) {
       ->needs(component)
       ->excludes(json_flag);
 
+  cli::ContainerAsk ask;
+  CLI::App* container_verb = app.add_subcommand("container", "Look at a container that runs, or change what it hosts.");
+  add_container(*container_verb, ask);
+
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
   if (arguments.empty())
@@ -121,6 +194,7 @@ int dispatch(int argc, char** argv) {
   try {
     if (*run_verb) return cli::run(run);
     if (*check_verb) return cli::check(check);
+    if (*container_verb) return cli::container(ask);
     return cli::describe(describe);
   } catch (const ConfigError& error) {
     return refuse(error, json);

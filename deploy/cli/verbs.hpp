@@ -40,8 +40,27 @@ struct DescribeRequest {
   bool markdown = false;  ///< the section of its page; needs a component
 };
 
+/// Something asked of a container that runs: `kervan container set brain r1/control speed="0.4 m/s"`.
+struct ContainerAsk {
+  std::string verb;                     ///< list, state, load, unload, activate, deactivate, set or snapshot
+  std::string container;                ///< empty for list
+  std::string component;                ///< may be empty for state and snapshot
+  std::string type;                     ///< load
+  std::vector<std::string> parameters;  ///< load, set: "name=value"
+  std::vector<std::string> ports;       ///< load: "port=/topic"
+  std::string log_level;                ///< load
+  std::string run;                      ///< the folder of the run; empty: the newest that is not over
+  std::string runs_folder = "runs";     ///< where runs are
+  std::string domain;                   ///< instead of a run
+  std::string interface = "lo";
+  std::string tag;
+  std::string timeout = "5s";
+  bool json = false;
+};
+
 int run(const RunRequest& request);
 int check(const CheckRequest& request);
 int describe(const DescribeRequest& request);
+int container(const ContainerAsk& ask);
 
 }  // namespace kervan::cli

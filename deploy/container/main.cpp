@@ -17,10 +17,12 @@
 #include <string>
 #include <vector>
 
+#include "deploy/container/changes.hpp"
 #include "deploy/container/control_channel.hpp"
 #include "deploy/container/crash_report.hpp"
 #include "deploy/container/mission_listener.hpp"
 #include "deploy/container/report.hpp"
+#include "deploy/container/service.hpp"
 #include "deploy/container/spec_json.hpp"
 #include "framework/component/error.hpp"
 
@@ -86,10 +88,13 @@ runtime::ContainerSpec spec_of(const Options& options) {
 }
 
 /// Throws what the construction throws. The channel hears of everything on the way.
-container::EndReport host(const runtime::ContainerSpec& spec, Duration limit, container::ControlChannel& channel) {
+container::EndReport host(const runtime::ContainerSpec& spec, const container::Changes& changes, Duration limit,
+                          container::ControlChannel& channel) {
   ComponentRegistry registry(ComponentRegistry::default_folders());
   container::add_mission_listener(registry);
   std::optional<runtime::Container> container(std::in_place, spec, registry);
+  std::optional<container::ContainerService> service;
+  service.emplace(*container, registry, [&] { changes.keep(container->spec()); });
   channel.send(container::Phase::constructed);
 
   runtime::RunControl control;
@@ -106,17 +111,19 @@ container::EndReport host(const runtime::ContainerSpec& spec, Duration limit, co
   };
   container::EndReport report = container::run_to_end(*container, control);
   // Taken apart before the report goes out: after the report the supervisor expects the end of the process.
+  service.reset();
   container.reset();
   return report;
 }
 
 int run(const Options& options, container::ControlChannel& channel) {
-  const runtime::ContainerSpec spec = spec_of(options);
+  runtime::ContainerSpec spec = spec_of(options);
+  const container::Changes changes(spec);
   const auto crash_file =
       spec.run_folder.empty() ? std::filesystem::path() : spec.run_folder / ("crash-" + spec.name + ".txt");
   container::report_crashes({spec.name, crash_file, options.control});
   channel.send(container::Phase::starting);
-  const container::EndReport report = host(spec, options.limit, channel);
+  const container::EndReport report = host(spec, changes, options.limit, channel);
   channel.send(report);
   using runtime::RunEnd;
   return report.end == RunEnd::finished || report.end == RunEnd::time_limit || report.end == RunEnd::interrupted

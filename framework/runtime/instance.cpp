@@ -67,8 +67,11 @@ bool ComponentInstance::running() const {
 
 void ComponentInstance::set_state(ComponentState state, std::string reason) {
   if (component_->state_ == state && component_->reason_ == reason) return;
-  component_->state_ = state;
-  component_->reason_ = std::move(reason);
+  {
+    const std::lock_guard lock(status_mutex_);
+    component_->state_ = state;
+    component_->reason_ = std::move(reason);
+  }
   status_changed_ = true;
   if (state == ComponentState::degraded)
     log_->warn("degraded: {}", component_->reason_);
@@ -103,6 +106,11 @@ void ComponentInstance::activate(Instant now) {
 void ComponentInstance::deactivate(Instant now) {
   if (!running()) return;
   guarded("on_deactivate", now, [&] { component_->on_deactivate(now.time); });
+}
+
+std::pair<ComponentState, std::string> ComponentInstance::status() const {
+  const std::lock_guard lock(status_mutex_);
+  return {component_->state_, component_->reason_};
 }
 
 Duration ComponentInstance::time_in_handler() const {

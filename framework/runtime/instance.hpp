@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ class ComponentInstance {
   unsigned index() const { return index_; }
   ComponentState state() const { return component_->state_; }
   const std::string& reason() const { return component_->reason_; }
+  /// State and reason, for any thread.
+  std::pair<ComponentState, std::string> status() const;
   bool running() const;  ///< active or degraded
   bool wants_own_thread() const { return component_->own_thread_; }
   const std::vector<std::unique_ptr<InputPort>>& inputs() const { return inputs_; }
@@ -107,6 +110,7 @@ class ComponentInstance {
   std::atomic<bool> status_changed_{false};
   Time status_published_{};
   std::vector<PortCounters> counters_published_;  ///< of the inputs
+  mutable std::mutex status_mutex_;  ///< for writing state and reason, and for reading them in another thread
 };
 
 }  // namespace kervan::runtime

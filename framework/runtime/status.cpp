@@ -6,8 +6,6 @@
 
 namespace kervan::runtime {
 
-namespace {
-
 kervan_msgs::msg::ComponentState to_message(ComponentState state) {
   using kervan_msgs::msg::ComponentState;
   switch (state) {
@@ -19,8 +17,6 @@ kervan_msgs::msg::ComponentState to_message(ComponentState state) {
   }
   return ComponentState::COMPONENT_FAILED;
 }
-
-}  // namespace
 
 QosProfile status_profile() { return {.name = "status", .durability = Durability::transient_local, .trace = false}; }
 

@@ -5,6 +5,7 @@
 
 #include "framework/dds/endpoint.hpp"
 #include "framework/runtime/instance.hpp"
+#include "kervan_msgs/msg/ComponentStatus.hpp"
 
 namespace kervan::runtime {
 
@@ -24,6 +25,8 @@ class StatusWriter {
   std::mutex mutex_;
   dds::Writer writer_;
 };
+
+kervan_msgs::msg::ComponentState to_message(ComponentState state);
 
 /// The profile of the status topic; it names containers, so it stays out of the trace.
 QosProfile status_profile();

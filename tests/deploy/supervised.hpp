@@ -48,6 +48,8 @@ class Supervised {
   const std::string& said() const { return said_; }
   /// A file in the run's folder.
   std::string file(const std::string& name) const;
+  /// Where the program was started; its runs are below it.
+  const std::filesystem::path& folder() const { return folder_.path(); }
   std::vector<std::string> files() const { return folder_.everything_in_it(); }
 
  private:
