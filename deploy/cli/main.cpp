@@ -12,7 +12,7 @@ using namespace kervan;
 
 namespace {
 
-const std::vector<std::string> verbs = {"run", "check", "describe", "container"};
+const std::vector<std::string> verbs = {"run", "check", "describe", "container", "systemd"};
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
@@ -171,6 +171,13 @@ int dispatch(int argc, char** argv) {
       ->needs(component)
       ->excludes(json_flag);
 
+  cli::SystemdRequest systemd;
+  CLI::App* systemd_verb = app.add_subcommand("systemd", "Write the systemd units of a host's containers.");
+  add_composition(*systemd_verb, systemd);
+  systemd_verb->add_option("--out", systemd.out, "folder for the units; else systemd-NAME")
+      ->check(not_empty)
+      ->type_name("DIR");
+
   cli::ContainerAsk ask;
   CLI::App* container_verb = app.add_subcommand("container", "Look at a container that runs, or change what it hosts.");
   add_container(*container_verb, ask);
@@ -194,6 +201,7 @@ int dispatch(int argc, char** argv) {
   try {
     if (*run_verb) return cli::run(run);
     if (*check_verb) return cli::check(check);
+    if (*systemd_verb) return cli::systemd(systemd);
     if (*container_verb) return cli::container(ask);
     return cli::describe(describe);
   } catch (const ConfigError& error) {

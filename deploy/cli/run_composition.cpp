@@ -24,16 +24,6 @@ std::string tag_of(const composition::ResolvedComposition& composition) {
   return composition.source.name + "-" + std::to_string(::getpid()) + "-" + std::to_string(now.count());
 }
 
-/// The program beside this one.
-fs::path container_program() {
-  std::error_code error;
-  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-  const fs::path program = folder / "kervan-container";
-  if (error || ::access(program.c_str(), X_OK) != 0)
-    throw ConfigError({program.string(), 0, 0}, "cannot be started; it belongs beside the program kervan");
-  return program;
-}
-
 supervisor::SupervisedRun run_here(const runtime::ContainerSpec& spec, ComponentRegistry& registry,
                                    const RunOptions& options, const RunEvents& events) {
   using Clock = std::chrono::steady_clock;
@@ -71,6 +61,15 @@ supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition&
 }
 
 }  // namespace
+
+fs::path container_program() {
+  std::error_code error;
+  const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+  const fs::path program = folder / "kervan-container";
+  if (error || ::access(program.c_str(), X_OK) != 0)
+    throw ConfigError({program.string(), 0, 0}, "cannot be started; it belongs beside the program kervan");
+  return program;
+}
 
 bool runs_here(const composition::ResolvedComposition& composition) {
   return composition.source.containers.size() == 1 && composition.source.clock.mode == composition::ClockMode::lockstep;

@@ -28,6 +28,9 @@ struct RunEvents {
   std::function<void(const std::string&)> waiting;   ///< whom the start waits for
 };
 
+/// The program that hosts a container, beside this one. Throws ConfigError if it is not there.
+std::filesystem::path container_program();
+
 /// Whether the composition runs in this process: there is nothing to start again under lockstep, and nothing to split.
 bool runs_here(const composition::ResolvedComposition& composition);
 

@@ -58,9 +58,14 @@ struct ContainerAsk {
   bool json = false;
 };
 
+struct SystemdRequest : CompositionRequest {
+  std::string out;  ///< folder for the units; empty: systemd-<composition>
+};
+
 int run(const RunRequest& request);
 int check(const CheckRequest& request);
 int describe(const DescribeRequest& request);
+int systemd(const SystemdRequest& request);
 int container(const ContainerAsk& ask);
 
 }  // namespace kervan::cli

@@ -21,6 +21,7 @@
 #include "deploy/container/control_channel.hpp"
 #include "deploy/container/crash_report.hpp"
 #include "deploy/container/mission_listener.hpp"
+#include "deploy/container/notify.hpp"
 #include "deploy/container/report.hpp"
 #include "deploy/container/service.hpp"
 #include "deploy/container/spec_json.hpp"
@@ -90,26 +91,33 @@ runtime::ContainerSpec spec_of(const Options& options) {
 /// Throws what the construction throws. The channel hears of everything on the way.
 container::EndReport host(const runtime::ContainerSpec& spec, const container::Changes& changes, Duration limit,
                           container::ControlChannel& channel) {
+  const container::ServiceManager manager;
   ComponentRegistry registry(ComponentRegistry::default_folders());
   container::add_mission_listener(registry);
   std::optional<runtime::Container> container(std::in_place, spec, registry);
   std::optional<container::ContainerService> service;
   service.emplace(*container, registry, [&] { changes.keep(container->spec()); });
   channel.send(container::Phase::constructed);
+  manager.say("STATUS=waiting for the other containers");
 
   runtime::RunControl control;
   control.limit = limit;
   control.stop = &stop_wanted;
   control.phase = [&](runtime::RunPhase phase) {
     channel.send(phase == runtime::RunPhase::matched ? container::Phase::matched : container::Phase::active);
+    manager.say(phase == runtime::RunPhase::matched ? "STATUS=matched" : "READY=1\nSTATUS=active");
   };
   std::optional<Time> start;
   control.progress = [&](Time now) {
     if (!start) start = now;
     const Duration passed = spec.clock == runtime::ClockMode::wall ? now - *start : now.time_since_epoch();
     channel.send(container::Progress{seconds(passed), {}});
+    if (manager.watchdog() == forever) return;
+    const std::string hanging = container::hanging_component(*container, manager.watchdog() / 2);
+    manager.say(hanging.empty() ? "WATCHDOG=1" : "STATUS=" + hanging);
   };
   container::EndReport report = container::run_to_end(*container, control);
+  manager.say("STOPPING=1\nSTATUS=" + report.reason);
   // Taken apart before the report goes out: after the report the supervisor expects the end of the process.
   service.reset();
   container.reset();

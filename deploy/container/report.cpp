@@ -1,5 +1,6 @@
 #include "deploy/container/report.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "deploy/container/mission_listener.hpp"
@@ -11,6 +12,17 @@ Counters counters_of(const runtime::Container& container) {
   for (const auto& instance : container.instances())
     for (const auto& input : instance->inputs()) counters.missed_deadlines += input->counters().deadline_missed;
   return counters;
+}
+
+std::string hanging_component(const runtime::Container& container, Duration longest) {
+  constexpr Duration kOwnThread = std::chrono::minutes(1);
+  for (const auto& instance : container.instances()) {
+    const Duration inside = instance->time_in_handler();
+    if (inside > (instance->wants_own_thread() ? std::max(longest, kOwnThread) : longest))
+      return instance->name() + " has been in a handler for " +
+             std::to_string(std::chrono::round<std::chrono::seconds>(inside).count()) + " s";
+  }
+  return {};
 }
 
 EndReport run_to_end(runtime::Container& container, const runtime::RunControl& control) {

@@ -35,6 +35,10 @@ struct EndReport {
 
 Counters counters_of(const runtime::Container& container);
 
+/// Who has been in one handler for longer than this, in words; empty if nobody has. A component with a thread of its own
+/// may take a minute: that is what it has it for. For the thread that runs the container.
+std::string hanging_component(const runtime::Container& container, Duration longest);
+
 /// Runs the container to its end and reports. The container's registry must have had add_mission_listener().
 EndReport run_to_end(runtime::Container& container, const runtime::RunControl& control);
 
