@@ -113,7 +113,10 @@ class Station final : public Component {
     if (const TwistStamped* command = command_.latest()) mix(static_cast<std::uint64_t>(command->twist.linear.x));
   }
   void on_slow_tick(Time) {
-    if (state_ % 3 != 0) drive();
+    if (state_ % 3 != 0)
+      drive();
+    else
+      drive_.assert_alive();
     if (state_ % 5 == 0) on_activate({});
   }
   // Last words: they belong to the run too.
@@ -172,6 +175,8 @@ runtime::ContainerSpec stations(std::uint64_t seed, const Placement& placement, 
   exclusive.ownership = Ownership::exclusive;
   exclusive.deadline = 30ms;
   exclusive.lifespan = 60ms;
+  exclusive.liveliness = Liveliness::manual;
+  exclusive.lease = 50ms;
   for (unsigned i = 0; i < kStations; ++i) {
     runtime::ComponentSpec& station = spec.components.emplace_back();
     station.name = "station" + std::to_string(i);
