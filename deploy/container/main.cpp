@@ -88,15 +88,17 @@ runtime::ContainerSpec spec_of(const Options& options) {
   return spec;
 }
 
-/// Throws what the construction throws. The channel hears of everything on the way.
+/// Throws what the construction throws. The channel hears of everything on the way. `began` becomes true when what
+/// still goes wrong is no mistake of the configuration any more.
 container::EndReport host(const runtime::ContainerSpec& spec, const container::Changes& changes, Duration limit,
-                          container::ControlChannel& channel) {
+                          container::ControlChannel& channel, bool& began) {
   const container::ServiceManager manager;
   ComponentRegistry registry(ComponentRegistry::default_folders());
   container::add_mission_listener(registry);
   std::optional<runtime::Container> container(std::in_place, spec, registry);
   std::optional<container::ContainerService> service;
   service.emplace(*container, registry, [&] { changes.keep(container->spec()); });
+  began = true;
   channel.send(container::Phase::constructed);
   manager.say("STATUS=waiting for the other containers");
 
@@ -111,7 +113,7 @@ container::EndReport host(const runtime::ContainerSpec& spec, const container::C
   control.progress = [&](Time now) {
     if (!start) start = now;
     const Duration passed = spec.clock == runtime::ClockMode::wall ? now - *start : now.time_since_epoch();
-    channel.send(container::Progress{seconds(passed), {}});
+    channel.send(container::Progress{seconds(passed), container::counters_of(*container)});
     if (manager.watchdog() == forever) return;
     const std::string hanging = container::hanging_component(*container, manager.watchdog() / 2);
     manager.say(hanging.empty() ? "WATCHDOG=1" : "STATUS=" + hanging);
@@ -124,14 +126,14 @@ container::EndReport host(const runtime::ContainerSpec& spec, const container::C
   return report;
 }
 
-int run(const Options& options, container::ControlChannel& channel) {
+int run(const Options& options, container::ControlChannel& channel, bool& began) {
   runtime::ContainerSpec spec = spec_of(options);
   const container::Changes changes(spec);
   const auto crash_file =
       spec.run_folder.empty() ? std::filesystem::path() : spec.run_folder / ("crash-" + spec.name + ".txt");
   container::report_crashes({spec.name, crash_file, options.control});
   channel.send(container::Phase::starting);
-  const container::EndReport report = host(spec, changes, options.limit, channel);
+  const container::EndReport report = host(spec, changes, options.limit, channel, began);
   channel.send(report);
   using runtime::RunEnd;
   return report.end == RunEnd::finished || report.end == RunEnd::time_limit || report.end == RunEnd::interrupted
@@ -153,11 +155,12 @@ int main(int argc, char** argv) {
     return exit_unusable;
   }
   container::ControlChannel channel(options.control);
+  bool began = false;
   try {
-    return run(options, channel);
+    return run(options, channel, began);
   } catch (const std::exception& error) {
-    channel.send(container::Failure{error.what(), true});
+    channel.send(container::Failure{error.what(), !began});
     if (options.control < 0) std::fprintf(stderr, "kervan-container: %s: %s\n", options.name.c_str(), error.what());
-    return exit_unusable;
+    return began ? exit_broken_off : exit_unusable;
   }
 }

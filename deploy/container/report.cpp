@@ -9,8 +9,10 @@ namespace kervan::container {
 
 Counters counters_of(const runtime::Container& container) {
   Counters counters;
-  for (const auto& instance : container.instances())
-    for (const auto& input : instance->inputs()) counters.missed_deadlines += input->counters().deadline_missed;
+  for (const auto& instance : container.instances()) {
+    counters.worst_latency_s = std::max(counters.worst_latency_s, seconds(instance->worst_latency()));
+    counters.missed_deadlines += instance->missed_deadlines();
+  }
   return counters;
 }
 

@@ -12,7 +12,7 @@
 namespace kervan::container {
 
 struct Counters {
-  double worst_latency_s = 0.0;        ///< from publishing to the beginning of the handler; 0 if nothing was handled
+  double worst_latency_s = 0.0;        ///< from receipt to the beginning of the handler; 0 if nothing was handled
   std::uint64_t missed_deadlines = 0;  ///< of all inputs
 };
 
@@ -35,8 +35,8 @@ struct EndReport {
 
 Counters counters_of(const runtime::Container& container);
 
-/// Who has been in one handler for longer than this, in words; empty if nobody has. A component with a thread of its own
-/// may take a minute: that is what it has it for. For the thread that runs the container.
+/// Who has been in one handler for longer than this, in words; empty if nobody has. A component with a thread of its
+/// own may take a minute: that is what it has it for. For the thread that runs the container.
 std::string hanging_component(const runtime::Container& container, Duration longest);
 
 /// Runs the container to its end and reports. The container's registry must have had add_mission_listener().

@@ -185,7 +185,15 @@ bool ComponentInstance::take_status_due(Time now) {
   }
   status_published_ = now;
   counters_published_.clear();
-  for (const auto& input : inputs_) counters_published_.push_back(input->counters());
+  Duration worst_latency{};
+  std::uint64_t missed_deadlines = 0;
+  for (const auto& input : inputs_) {
+    const PortCounters& counters = counters_published_.emplace_back(input->counters());
+    worst_latency = std::max(worst_latency, counters.worst_latency);
+    missed_deadlines += counters.deadline_missed;
+  }
+  worst_latency_.store(worst_latency.count(), std::memory_order_relaxed);
+  missed_deadlines_.store(missed_deadlines, std::memory_order_relaxed);
   return true;
 }
 

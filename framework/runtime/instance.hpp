@@ -74,6 +74,9 @@ class ComponentInstance {
   /// Whether a status is to be published now: the state, its reason or a trouble changed, or a counter did and the last
   /// status is a second old.
   bool take_status_due(Time now);
+  /// Of all inputs, as of the status published last; from any thread.
+  Duration worst_latency() const { return Duration(worst_latency_.load(std::memory_order_relaxed)); }
+  std::uint64_t missed_deadlines() const { return missed_deadlines_.load(std::memory_order_relaxed); }
   /// Something that its status tells has changed; from any thread.
   void touch_status() noexcept;
 
@@ -108,6 +111,8 @@ class ComponentInstance {
   std::vector<std::unique_ptr<InputPort>> inputs_;
   std::vector<TimerState> timers_;
   std::atomic<bool> status_changed_{false};
+  std::atomic<Duration::rep> worst_latency_{0};
+  std::atomic<std::uint64_t> missed_deadlines_{0};
   Time status_published_{};
   std::vector<PortCounters> counters_published_;  ///< of the inputs
   mutable std::mutex status_mutex_;  ///< for writing state and reason, and for reading them in another thread
