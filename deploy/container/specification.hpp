@@ -11,7 +11,7 @@
 namespace kervan::container {
 
 struct SpecificationOptions {
-  std::filesystem::path run_folder;  ///< empty: nothing is written
+  std::filesystem::path run_folder = {};  ///< empty: nothing is written
   unsigned threads = 0;              ///< of every container; 0: as the composition says
   bool log_to_console = true;
   std::string tag = {};  ///< of a lockstep run over several containers; runs with different tags do not meet

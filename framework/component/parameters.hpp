@@ -62,15 +62,15 @@ struct ParameterSpec {
 struct ParameterInfo {
   std::string name;
   ParameterKind kind = ParameterKind::number;
-  std::string unit;
+  std::string unit = {};
   double min = -std::numeric_limits<double>::infinity();
   double max = std::numeric_limits<double>::infinity();
-  std::vector<std::string> choices;
-  std::string help;
+  std::vector<std::string> choices = {};
+  std::string help = {};
   bool required = false;
   bool live = false;
-  Value default_value;
-  std::vector<ParameterInfo> members;  ///< of a records parameter
+  Value default_value = {};
+  std::vector<ParameterInfo> members = {};  ///< of a records parameter
 };
 
 /// Nothing if `value` is allowed for `info`, else one sentence that says what is allowed, without the parameter's name:
