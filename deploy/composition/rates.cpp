@@ -22,8 +22,9 @@ std::optional<Period> shortest_period(const ResolvedComponent& component, const 
     const auto given = component.parameters.find(info.name);
     if (info.kind != ParameterKind::duration || given == component.parameters.end()) continue;
     const auto* value = std::get_if<double>(&given->second);
-    if (value != nullptr && from_seconds(*value) == shortest)
-      period.location = entry.params.required(info.name).location;
+    if (value == nullptr || from_seconds(*value) != shortest) continue;
+    // One that the composition's clock gave stands at the clock, not here.
+    if (const config::Node* written = entry.params.optional(info.name)) period.location = written->location;
   }
   return period;
 }
