@@ -33,13 +33,10 @@ void print_findings(const composition::ResolvedComposition& composition) {
 
 void require_usable(const composition::ResolvedComposition& composition) {
   std::vector<const composition::Finding*> errors;
-  for (const auto& finding : composition.findings) {
-    if (finding.severity == composition::Severity::error)
-      errors.push_back(&finding);
-    else
-      print(finding);
-  }
-  if (errors.empty()) return;
+  for (const auto& finding : composition.findings)
+    if (finding.severity == composition::Severity::error) errors.push_back(&finding);
+  // Beside an error, warnings would only hide it.
+  if (errors.empty()) return print_findings(composition);
   const std::size_t more = errors.size() - 1;
   throw ConfigError(errors.front()->location,
                     errors.front()->message +

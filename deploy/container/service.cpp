@@ -1,6 +1,7 @@
 #include "deploy/container/service.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdio>
 #include <exception>
 
@@ -38,10 +39,18 @@ ValueMap values_of(const std::vector<NamedText>& given, const std::vector<Parame
   return values;
 }
 
+/// A container's name as part of a topic's, which takes letters, digits and _ alone. Two names may become one: whoever
+/// reads the topic looks for its own name in the request or reply.
+std::string topic_part(std::string name) {
+  for (char& c : name)
+    if (!std::isalnum(static_cast<unsigned char>(c))) c = '_';
+  return name;
+}
+
 }  // namespace
 
-std::string request_topic(const std::string& container) { return "/kervan/" + container + "/request"; }
-std::string reply_topic(const std::string& container) { return "/kervan/" + container + "/reply"; }
+std::string request_topic(const std::string& container) { return "/kervan/" + topic_part(container) + "/request"; }
+std::string reply_topic(const std::string& container) { return "/kervan/" + topic_part(container) + "/reply"; }
 
 QosProfile service_profile() { return {.name = "service", .depth = 100, .trace = false}; }
 

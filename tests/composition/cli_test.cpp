@@ -100,9 +100,11 @@ TEST_F(Program, HelpsWithEveryVerb) {
 }
 
 TEST_F(Program, RefusesInOneLineAndWritesNothing) {
-  expect_refused("", "a command is missing: run, check, describe; see kervan --help");
-  expect_refused("rnu lab", "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe");
-  expect_refused("run lba", "there is no composition 'lba'; did you mean 'lab'? there are: lab");
+  expect_refused("", "a command is missing: run, check, describe, container, systemd; see kervan --help");
+  expect_refused("rnu lab",
+                 "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, container, systemd");
+  expect_refused("run lba",
+                 "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
   expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
   expect_refused("run lab --place left=wrold",

@@ -82,7 +82,7 @@ const Mistake mistakes[] = {
      "29:77: the topic '/r1/odom' is written by world.r1/odom (c.yaml:27:16) as nav_msgs::msg::Odometry, but read by "
      "report.world (c.yaml:29:77) as kervan_msgs::msg::Outline"},
     {"RobotThatTheWorldDoesNotHave", "goals: {r1: ", "goals: {r2: ",
-     "14:7: nothing writes '/r1/goal', which r1/planner.goal needs; did you mean '/r2/goal'?; and 2 more errors, see "
+     "14:7: nothing writes '/r1/goal', which r1/planner.goal needs; did you mean '/r2/goal'?; and 1 more error, see "
      "kervan check c.yaml"},
     {"RecordedRobotThatTheWorldDoesNotHave", "{robots: [r1]}", "{robots: [r1, r9]}",
      "29:60: nothing writes '/r9/truth', which report.r9/truth needs; did you mean '/r1/truth'?"},
@@ -98,7 +98,7 @@ const Mistake mistakes[] = {
     {"EdgeToANegativeNode", "[1, 2]]", "[1, -1]]", "16:82: edges[1]: there is no node -1; nodes are counted from 0"},
     {"GoalThatIsNoNumber", "at: [[16.0 m, 7.8 m]]", "at: [[nan, 7.8 m]]",
      "30:30: at[0][0]: 'nan' is not a length; write a number and a unit, e.g. 1 m"},
-    {"GoalOutsideOfEverything", "at: [[16.0 m, 7.8 m]]", "at: [[1e308 km, 7.8 m]]", "30:28: at: [0][0]: "},
+    {"GoalOutsideOfEverything", "at: [[16.0 m, 7.8 m]]", "at: [[1e308 km, 7.8 m]]", "30:30: at[0][0]: "},
     {"NoGoal", "at: [[16.0 m, 7.8 m]]", "at: []",
      "30:28: goals.r1.at: there is no goal in it; write e.g. [[1 m, 2 m]]"},
     {"TwoMissions", "mission: {", "mission: {goals: {}}\nmission: {",
@@ -145,7 +145,7 @@ TEST_F(BadInput, FilesThatAreNoComposition) {
   expect_refused({"run", "link.yaml"}, "link.yaml: there is no such file\n");
   write("here.yaml", "");
   expect_refused({"run", "here"}, "there is no composition 'here'; a file is named with its ending: here.yaml\n");
-  expect_refused({"run", ""}, "there is no composition ''; there are: lab");
+  expect_refused({"run", ""}, "there is no composition ''; there are: ");
 }
 
 TEST_F(BadInput, FileThatMayNotBeRead) {
@@ -196,13 +196,15 @@ TEST_F(BadInput, Options) {
   expect_refused({"run", "lab", "--threads", "-1"}, "--threads -1: -1 is out of range; allowed: 1 .. 64\n");
   expect_refused({"run", "lab", "--threads", "10000"}, "--threads 10000: 10000 is out of range; allowed: 1 .. 64\n");
   expect_refused({"run", "lab", "--threads", "two"}, "--threads two: expected an integer: 'two' is not a number\n");
-  expect_refused({"run", "lab", "--place", "none"}, "kervan run: --place: 'none' is no placement; allowed: all; see ");
+  expect_refused({"run", "lab", "--place", "none"},
+                 "--place none: write --place all, --place each or --place CONTAINER=COMPONENT,COMPONENT");
   expect_refused({"run", "lab", "lab"},
                  "kervan run: The following argument was not expected: lab; see kervan run --help\n");
   expect_refused({"run"}, "kervan run: a composition is missing; name a shipped one, such as lab, or a file; see ");
-  expect_refused({}, "a command is missing: run, check, describe; see kervan --help\n");
+  expect_refused({}, "a command is missing: run, check, describe, container, systemd; see kervan --help\n");
   expect_refused({"--nonsense"}, "kervan: ");
-  expect_refused({"rnu", "lab"}, "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe\n");
+  expect_refused({"rnu", "lab"},
+                 "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, container, systemd\n");
   expect_refused({"describe", "control/field"}, "there is no component type 'control/field'; there are: ");
 }
 
