@@ -313,7 +313,7 @@ void Supervisor::handle_death(Managed& container, int status) {
                       : WIFSIGNALED(status)             ? "died of " + exit_text(status)
                                                         : "ended without a report (" + exit_text(status) + ")";
   const std::string who = "the container " + container.name() + " ";
-  if (container.failure && container.failure->configuration && !container.ever_active)
+  if (container.failure && container.failure->configuration && !container.ever_active && !container.on_its_own)
     return abort("container " + container.name() + ": " + container.failure->message, true);
   const std::string when = " at " + time_of_death(container);
   if (clock_ == ClockMode::lockstep)
