@@ -54,7 +54,10 @@ std::string cyclone_configuration(const DomainConfig& config) {
     for (const std::string& peer : config.peers) xml += "<Peer address=\"" + escaped(peer) + "\"/>";
     xml += "</Peers>";
   }
-  return xml + "</Discovery>";
+  // A reader takes nothing of a reliable writer before it has asked what there is. By default it asks 10 ms after the
+  // match, and asks again for what it missed after 100 ms: an eternity for the first samples of a run.
+  return xml +
+         "</Discovery><Internal><PreEmptiveAckDelay>0s</PreEmptiveAckDelay><NackDelay>10ms</NackDelay></Internal>";
 }
 
 Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time)

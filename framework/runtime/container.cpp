@@ -179,14 +179,7 @@ void Container::wake() {
   finish_wanted_.notify_one();
 }
 
-Container::~Container() {
-  watch_.reset();
-  members_.reset();
-  clock_reader_.reset();
-  instances_.clear();
-  status_writer_.reset();
-  log_sinks_.reset();
-}
+Container::~Container() = default;
 
 ComponentInstance* Container::find(const std::string& name) {
   for (const auto& instance : instances_)

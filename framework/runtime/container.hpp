@@ -144,6 +144,8 @@ class Container {
   void start_dispatchers(Activity* activity);
   RunReport supervise(const RunControl& control);
   RunReport run_simulated_time(const RunControl& control, const Activity& activity);
+  /// Does what was posted. A report if the run is over: a component wished it, or the stop flag is set.
+  std::optional<RunReport> over(std::unique_lock<std::mutex>& finish_lock, const RunControl& control);
   std::optional<RunReport> wait_for_clock(const RunControl& control);
   std::optional<RunReport> lost_clock() const;
 
@@ -161,24 +163,26 @@ class Container {
   std::shared_ptr<spdlog::logger> log_;  ///< of the container itself
   std::unique_ptr<StatusWriter> status_writer_;
   Bell bell_;
-  std::unique_ptr<Members> members_;  ///< not under lockstep, nor in a composition of one container
   std::mutex writer_indices_mutex_;
   std::map<std::uint64_t, unsigned> writer_indices_;  ///< by Cyclone's instance handle; under the mutex
   std::deque<std::uint64_t> departed_writers_;        ///< handles whose indices are still known, oldest first
   std::map<unsigned, std::pair<std::uint64_t, std::uint64_t>> departed_traces_;  ///< writer -> sequence and trace
-  std::vector<std::unique_ptr<ComponentInstance>> instances_;  ///< by index; only the thread in run() changes it
-  std::unique_ptr<Watch> watch_;                               ///< not under lockstep
-  bool expects_peers_ = false;                                 ///< the run is on: a missing peer is a trouble
-  std::vector<std::unique_ptr<Dispatcher>> dispatchers_;       ///< the first is everybody's; others serve one component
-  Activity* activity_ = nullptr;  ///< of the run that is under way, if simulated time is run here
-  std::unique_ptr<Operations> operations_;
-  const std::atomic<bool>* stop_ = nullptr;  ///< of the run that is under way
-  std::unique_ptr<Lockstep> lockstep_;
-  std::unique_ptr<ClockReader> clock_reader_;  ///< clock sim, when another container runs the time
   std::atomic<bool> finish_requested_{false};
   std::mutex finish_mutex_;
   std::condition_variable finish_wanted_;
   std::optional<std::pair<unsigned, std::string>> finish_;  ///< component index and reason
+  const std::atomic<bool>* stop_ = nullptr;                 ///< of the run that is under way
+  bool expects_peers_ = false;                              ///< the run is on: a missing peer is a trouble
+  Activity* activity_ = nullptr;  ///< of the run that is under way, if simulated time is run here
+  std::unique_ptr<Operations> operations_;
+
+  // Endpoints call into what stands above them until they are gone, so the order is that of construction.
+  std::unique_ptr<Lockstep> lockstep_;
+  std::vector<std::unique_ptr<Dispatcher>> dispatchers_;       ///< the first is everybody's; others serve one component
+  std::vector<std::unique_ptr<ComponentInstance>> instances_;  ///< by index; only the thread in run() changes it
+  std::unique_ptr<ClockReader> clock_reader_;                  ///< clock sim, when another container runs the time
+  std::unique_ptr<Members> members_;  ///< not under lockstep, nor in a composition of one container
+  std::unique_ptr<Watch> watch_;      ///< not under lockstep
 };
 
 }  // namespace kervan::runtime

@@ -5,6 +5,7 @@
 #include "framework/runtime/clock_reader.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/dispatcher.hpp"
+#include "framework/runtime/fences.hpp"
 #include "framework/runtime/operations.hpp"
 #include "framework/runtime/pace.hpp"
 
@@ -87,20 +88,24 @@ RunReport Container::run_dispatchers(const RunControl& control) {
   return report;
 }
 
+std::optional<RunReport> Container::over(std::unique_lock<std::mutex>& finish_lock, const RunControl& control) {
+  while (!finish_ && operations_->pending()) {
+    finish_lock.unlock();
+    operations_->run_posted();
+    finish_lock.lock();
+  }
+  if (finish_) return RunReport{.end = RunEnd::finished, .reason = finish_->second};
+  // A signal handler sets the flag and can do no more, so it has to be looked at now and then.
+  if (stop_wanted(control)) return interrupted();
+  return std::nullopt;
+}
+
 /// Waits for the end of a run, and shows its progress.
 RunReport Container::supervise(const RunControl& control) {
   const Time end = control.limit == forever ? Time::max() : started_ + control.limit;
   std::unique_lock lock(finish_mutex_);
   for (;;) {
-    if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
-    if (operations_->pending()) {
-      lock.unlock();
-      operations_->run_posted();
-      lock.lock();
-      continue;
-    }
-    // A signal handler sets the flag and can do no more, so it has to be looked at now and then.
-    if (stop_wanted(control)) return interrupted();
+    if (auto ended = over(lock, control)) return *std::move(ended);
     const Time now = clock_.now();
     if (now >= end) return time_limit();
     if (const auto lost = lost_clock()) return *lost;
@@ -122,14 +127,7 @@ RunReport Container::run_simulated_time(const RunControl& control, const Activit
   Steady::time_point next_progress = Steady::now();
   std::unique_lock lock(finish_mutex_);
   for (;;) {
-    if (finish_) return {.end = RunEnd::finished, .reason = finish_->second};
-    if (operations_->pending()) {
-      lock.unlock();
-      operations_->run_posted();
-      lock.lock();
-      continue;
-    }
-    if (stop_wanted(control)) return interrupted();
+    if (auto ended = over(lock, control)) return *std::move(ended);
     const Steady::time_point now = Steady::now();
     if (control.progress && now >= next_progress) {
       next_progress = now + kProgressPeriod;
@@ -164,10 +162,7 @@ std::optional<RunReport> Container::wait_for_clock(const RunControl& control) {
   if (!clock_reader_) return std::nullopt;
   while (!clock_reader_->wait_for_first(Steady::now() + kProgressPeriod)) {
     if (stop_wanted(control)) return interrupted();
-    {
-      const std::lock_guard lock(finish_mutex_);
-      if (finish_) return RunReport{.end = RunEnd::finished, .reason = finish_->second};
-    }
+    if (const auto wish = finish_wish()) return RunReport{.end = wish->end, .reason = wish->reason};
     if (clock_reader_->silence() >= kFirstClockPatience) return clock_lost(spec_, kFirstClockPatience);
   }
   return std::nullopt;

@@ -1,5 +1,5 @@
-/// What one thread waits for: a number of things that happen in other threads, also under Cyclone's locks. Nobody is woken
-/// before the last of them, and no system call is made unless somebody sleeps.
+/// What one thread waits for: a number of things that happen in other threads, also under Cyclone's locks. Nobody is
+/// woken before the last of them, and no system call is made unless somebody sleeps.
 #pragma once
 
 #include <atomic>

@@ -26,9 +26,9 @@ constexpr Duration kTellPeriod = std::chrono::seconds(5);
 constexpr Duration kGrace = std::chrono::seconds(2);
 constexpr std::size_t kMostTold = 4;
 
-/// Why the container `name` holds up the start; empty if it does not.
+/// Why the container `name`, which must be `wanted` (matched or ready), holds up the start; empty if it does not.
 std::string what_is_missing(const std::string& name, const std::map<std::string, Members::Other>& others,
-                            std::uint64_t composition) {
+                            std::uint64_t composition, ContainerPhase wanted) {
   const auto found = others.find(name);
   if (found == others.end()) return "container '" + name + "' is not there";
   if (!found->second.answers) return "container '" + name + "' does not answer";
@@ -40,6 +40,10 @@ std::string what_is_missing(const std::string& name, const std::map<std::string,
     case ContainerPhase::CONTAINER_STARTING: return "container '" + name + "' is not matched with all others";
     case ContainerPhase::CONTAINER_FAILED: return "container '" + name + "' failed: " + other.reason;
     case ContainerPhase::CONTAINER_MATCHED:
+      return wanted == ContainerPhase::CONTAINER_READY
+                 ? "container '" + name + "' has not heard that all others are matched"
+                 : std::string();
+    case ContainerPhase::CONTAINER_READY:
     case ContainerPhase::CONTAINER_ACTIVE:
     case ContainerPhase::CONTAINER_FINISHED: return {};
   }
@@ -78,6 +82,9 @@ std::optional<RunReport> Container::wait_for_peers(const RunControl& control) {
   Clock::time_point tell = start + kTellPeriod;
   std::optional<Clock::time_point> runs_since;  // others are active already: this container was restarted
   bool matched = false;
+  // Two rounds: what others said before this container was there may reach it a while after it has reached them, and
+  // whoever became active meanwhile would be heard by nobody.
+  bool ready = false;
   for (;;) {
     std::vector<std::string> missing = watch_->missing_pairs();
     if (!matched && missing.empty()) {
@@ -86,12 +93,19 @@ std::optional<RunReport> Container::wait_for_peers(const RunControl& control) {
       reached(RunPhase::matched);
     }
     const auto others = members_->others();
-    for (const std::string& member : spec_.members) {
-      if (member == spec_.name) continue;
-      std::string why = what_is_missing(member, others, members_->composition());
-      if (!why.empty()) missing.push_back(std::move(why));
+    const auto ask_all = [&](ContainerPhase wanted) {
+      for (const std::string& member : spec_.members) {
+        if (member == spec_.name) continue;
+        std::string why = what_is_missing(member, others, members_->composition(), wanted);
+        if (!why.empty()) missing.push_back(std::move(why));
+      }
+      return missing.empty();
+    };
+    if (!ready && ask_all(ContainerPhase::CONTAINER_MATCHED)) {
+      ready = true;
+      members_->publish(ContainerPhase::CONTAINER_READY, {}, dds::wall_now());
     }
-    if (missing.empty()) return std::nullopt;
+    if (ready && ask_all(ContainerPhase::CONTAINER_READY)) return std::nullopt;
 
     const Clock::time_point now = Clock::now();
     const LogTime log_time(dds::wall_now());

@@ -194,6 +194,13 @@ TEST(WallOperationsHang, AComponentThatDoesNotComeBackIsLeftAsItIsAndTheOthersRu
   }
 }
 
+/// A sanitizer holds freed memory back, so that a process grows without a leak; AddressSanitizer finds leaks itself.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kResidentTellsLeaks = false;
+#else
+constexpr bool kResidentTellsLeaks = true;
+#endif
+
 /// Resident memory of this process in kB.
 long resident() {
   std::ifstream status("/proc/self/status");
@@ -222,7 +229,7 @@ TEST(WallOperationsLeak, LoadingAndUnloadingAHundredTimesLeavesNothingBehind) {
   RecordProperty("grown_kB", static_cast<int>(grown));
   EXPECT_EQ(Ticker::alive, 1);
   EXPECT_EQ(running.container->instances().size(), 4u);
-  EXPECT_LT(grown, 4096) << rounds / 2 << " rounds, from " << before << " kB";
+  if (kResidentTellsLeaks) EXPECT_LT(grown, 4096) << rounds / 2 << " rounds, from " << before << " kB";
 }
 
 }  // namespace

@@ -90,6 +90,7 @@ TEST(Readiness, WhileItWaitsItSaysWhatIsMissing) {
   composition.add("left", "counter", counter, {out});
   composition.add("middle", "idle", idle, {in});
   composition.add("right", "listener", listener, {in});
+  Listener::first = 0;
 
   Running left(composition.spec("left"), composition.registry());
   Running middle(composition.spec("middle"), composition.registry());
@@ -105,6 +106,7 @@ TEST(Readiness, WhileItWaitsItSaysWhatIsMissing) {
 
   Running right(composition.spec("right"), composition.registry());
   for (Running* running : {&left, &middle, &right}) EXPECT_EQ(running->report().end, RunEnd::finished);
+  EXPECT_EQ(Listener::first, 1) << "somebody began long before the last one was told that all are matched";
 }
 
 TEST(Readiness, AContainerOfAnotherCompositionIsNamedAndNotWaitedFor) {
