@@ -38,7 +38,8 @@ EndReport run_to_end(runtime::Container& container, const runtime::RunControl& c
   report.simulated_s = container.spec().clock == runtime::ClockMode::wall
                            ? std::chrono::duration<double>(Clock::now() - start).count()
                            : seconds(run.ended_at);
-  if (container.spec().clock == runtime::ClockMode::lockstep) report.trace_hash = container.trace_hash();
+  if (container.spec().clock == runtime::ClockMode::lockstep && !run.broken_off)
+    report.trace_hash = container.trace_hash();
   report.mission = mission_result(container);
   for (const auto& instance : container.instances())
     if (instance->state() == ComponentState::failed) report.failed.push_back({instance->name(), instance->reason()});

@@ -27,7 +27,7 @@ struct EndReport {
   runtime::RunEnd end = runtime::RunEnd::finished;
   std::string reason;                       ///< one sentence
   double simulated_s = 0.0;                 ///< composition's time at the end; under the wall clock since the start
-  std::optional<std::uint64_t> trace_hash;  ///< under lockstep
+  std::optional<std::uint64_t> trace_hash;  ///< under lockstep, if all containers came to the end together
   std::optional<kervan_msgs::msg::MissionResult> mission;
   std::vector<FailedComponent> failed;  ///< components that failed on the way, in the composition's order
   Counters counters;

@@ -185,7 +185,8 @@ ComponentSpec component_of(const JsonReader& reader) {
 }
 
 ordered_json domain_json(const dds::DomainConfig& domain) {
-  const auto& [id, network, interface, address, tag, peers, multicast, processes, external_id, user_data] = domain;
+  const auto& [id, network, interface, address, tag, peers, multicast, processes, external_id, linger, user_data] =
+      domain;
   return {{"id", id},
           {"network", network},
           {"interface", interface},
@@ -195,12 +196,13 @@ ordered_json domain_json(const dds::DomainConfig& domain) {
           {"multicast", to_text(multicast)},
           {"processes", processes},
           {"external_id", external_id ? ordered_json(*external_id) : nullptr},
+          {"linger_ns", linger.count()},
           {"user_data", user_data}};
 }
 
 dds::DomainConfig domain_of(const JsonReader& reader) {
-  reader.only_keys(
-      {"id", "network", "interface", "address", "tag", "peers", "multicast", "processes", "external_id", "user_data"});
+  reader.only_keys({"id", "network", "interface", "address", "tag", "peers", "multicast", "processes", "external_id",
+                    "linger_ns", "user_data"});
   dds::DomainConfig domain;
   domain.id = reader.at("id").integer<std::uint32_t>();
   domain.network = reader.at("network").boolean();
@@ -213,6 +215,7 @@ dds::DomainConfig domain_of(const JsonReader& reader) {
   domain.processes = reader.at("processes").integer<int>();
   if (const JsonReader external = reader.at("external_id"); !external.raw().is_null())
     domain.external_id = external.integer<std::uint32_t>();
+  domain.linger = Duration(reader.at("linger_ns").integer<std::int64_t>());
   domain.user_data = reader.at("user_data").text();
   return domain;
 }

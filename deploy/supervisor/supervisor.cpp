@@ -303,7 +303,9 @@ void Supervisor::handle_report(Managed& container) {
     say("the container " + container.name() + " was ended from outside");
   }
   result_.reports.push_back(report);
-  if (end_ == End::running && report.end != RunEnd::interrupted) begin_ending(End::orderly);
+  if (end_ != End::running || report.end == RunEnd::interrupted) return;
+  // Those who are left end by themselves; the one they lost may hang.
+  begin_ending(report.end == RunEnd::peer_lost ? End::quick : End::orderly);
 }
 
 void Supervisor::handle_death(Managed& container, int status) {

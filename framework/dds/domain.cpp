@@ -56,8 +56,9 @@ std::string cyclone_configuration(const DomainConfig& config) {
   }
   // A reader takes nothing of a reliable writer before it has asked what there is. By default it asks 10 ms after the
   // match, and asks again for what it missed after 100 ms: an eternity for the first samples of a run.
-  return xml +
-         "</Discovery><Internal><PreEmptiveAckDelay>0s</PreEmptiveAckDelay><NackDelay>10ms</NackDelay></Internal>";
+  const auto linger = std::chrono::ceil<std::chrono::milliseconds>(config.linger).count();
+  return xml + "</Discovery><Internal><PreEmptiveAckDelay>0s</PreEmptiveAckDelay><NackDelay>10ms</NackDelay>" +
+         "<WriterLingerDuration>" + std::to_string(linger) + "ms</WriterLingerDuration></Internal>";
 }
 
 Domain::Domain(const DomainConfig& config, const std::atomic<Time::rep>* time)

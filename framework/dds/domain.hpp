@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -33,6 +34,8 @@ struct DomainConfig {
   int processes = 120;  ///< that can take part on one host; 120 is the most that the ports of DDS have room for
   /// The domain's number on the network when it is not `id`: several domains of one process meet there like processes.
   std::optional<std::uint32_t> external_id = {};
+  /// How long the end of a writer may wait until its readers have everything. A reader that is dead takes it all.
+  Duration linger = std::chrono::seconds(1);
   std::string user_data = {};  ///< what the participant says of itself to every peer; see participant_identity()
 };
 

@@ -51,6 +51,8 @@ Container::Container(ContainerSpec spec, ComponentRegistry& registry)
       clock_(spec_.clock == ClockMode::sim),
       operations_(std::make_unique<Operations>(*this, registry)) {
   spec_.domain.user_data = dds::to_user_data({spec_.name, composition_hash(spec_)});
+  // Under lockstep whoever ends knows already that the others have everything; or that somebody never will.
+  if (spec_.clock == ClockMode::lockstep) spec_.domain.linger = Duration::zero();
   domain_ = std::make_unique<dds::Domain>(spec_.domain, clock_.stamp());
   // Several processes would write over each other's lines in one file.
   const std::string log_file = spec_.members.size() > 1 ? "log-" + spec_.name + ".txt" : "log.txt";
@@ -304,8 +306,12 @@ RunReport Container::run(const RunControl& control) {
   report.ended_at = instant_.time;
   if (lockstep_) {
     report.cycles = lockstep_->cycles();
-    // Lost while everybody was ending: then there is no common trace.
-    if (!lockstep_->lost().empty()) report.end = RunEnd::peer_lost, report.reason = lockstep_->lost();
+    // Perhaps only while everybody was ending.
+    if (const auto& broken_off = lockstep_->broken_off()) {
+      report.end = broken_off->end;
+      report.reason = broken_off->reason;
+      report.broken_off = true;
+    }
   }
   return report;
 }

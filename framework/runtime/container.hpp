@@ -50,6 +50,8 @@ struct RunReport {
   std::string reason = {};   ///< one sentence
   Time ended_at{};           ///< on the composition's clock
   std::uint64_t cycles = 0;  ///< delta cycles run
+  /// Lockstep only: this container ended apart from the others, so they have no trace in common.
+  bool broken_off = false;
 };
 
 /// How far a run is before it runs.
@@ -64,8 +66,10 @@ struct RunControl {
   Duration limit = forever;                            ///< on the composition's clock, from the start of the run
   const std::atomic<bool>* stop = nullptr;             ///< ends the run in good order when set
   Duration members_within = std::chrono::seconds(30);  ///< lockstep: wall time in which the other containers must come
-  std::function<void(Time)> progress = {};             ///< called about every kProgressPeriod
-  std::function<void(RunPhase)> phase = {};            ///< called when the run reaches it
+  /// Lockstep: wall time after which a handler that does not return counts as stuck, and its container as lost.
+  Duration longest_handler = std::chrono::seconds(60);
+  std::function<void(Time)> progress = {};   ///< called about every kProgressPeriod
+  std::function<void(RunPhase)> phase = {};  ///< called when the run reaches it
 };
 
 class Container {

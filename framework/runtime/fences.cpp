@@ -16,16 +16,18 @@ namespace {
 using namespace std::chrono_literals;
 using kervan_msgs::msg::Fence;
 using kervan_msgs::msg::FenceWish;
-using Steady = std::chrono::steady_clock;
-
 constexpr const char* kFenceTopic = "/kervan/fence";
 
 /// A member that was not heard of for so long is lost: with the time it takes to tell everybody, less than 2 s.
 constexpr Duration kLease = 1200ms;
 /// How often a waiting or working container says that it is alive.
 constexpr Duration kAssertPeriod = 200ms;
-/// A handler may take so long before its container counts as stuck.
-constexpr Duration kLongestHandler = 60s;
+/// How often whoever waits looks whether it still should.
+constexpr Duration kLookPeriod = 50ms;
+/// Told to stop, a container waits so long for the others: whoever is at work agrees on an end with it.
+constexpr Duration kStopPatience = 100ms;
+/// The last fence may take so long to reach the others, and so long if one of them is no longer there.
+constexpr Duration kLastWords = 1s, kLastWordsWithoutOne = 100ms;
 /// Cyclone watches the lease and otherwise carries: "keep all" of a fence is two samples.
 QosProfile fence_profile() {
   return {.name = "fence", .depth = 0, .liveliness = Liveliness::manual, .lease = kLease, .trace = false};
@@ -58,7 +60,8 @@ Fences::Fences(Container& container)
     : container_(container),
       matching_(container),
       log_(container.make_logger({.name = "lockstep", .type = {}})),
-      hearers_(matching_.writers().size()) {
+      hearers_(matching_.writers().size()),
+      longest_handler_(RunControl{}.longest_handler.count()) {
   const ContainerSpec& spec = container.spec();
   require_runnable(spec);
   for (const CompositionEndpoint& reader : matching_.readers())
@@ -92,6 +95,8 @@ Fences::~Fences() {
   }
   watch_end_.notify_one();
   watchdog_.join();
+  // Writers of a lockstep run do not linger.
+  writer_->wait_for_acknowledgement(broken_off_ ? kLastWordsWithoutOne : kLastWords);
   reader_.reset();
   if (own_) dds::release(own_);
   release_fences();
@@ -117,8 +122,11 @@ void Fences::on_sample(const dds::Arrival& arrival) noexcept {
   if (fence.container >= members_.size() || fence.container == self_) return;
   Member& member = members_[fence.container];
   lock();
-  if (fence.wish == FenceWish::FENCE_LOST) {
-    if (words_.empty()) words_ = fence.reason;
+  if (fence.wish == FenceWish::FENCE_LOST || fence.wish == FenceWish::FENCE_GIVEN_UP) {
+    if (words_.empty()) {
+      words_ = fence.reason;
+      given_up_ = fence.wish == FenceWish::FENCE_GIVEN_UP;
+    }
     unlock();
     return member_gone(fence.who);
   }
@@ -150,48 +158,58 @@ void Fences::member_gone(unsigned member) noexcept {
   countdown_.wake();
 }
 
-/// Until everything that was counted has happened; false if a member is lost or give_up() says so.
-bool Fences::wait(Instant at, const std::function<bool()>& give_up) {
+/// Until everything that was counted has happened; false if it is `until`, or if the others are not waited for any
+/// more.
+bool Fences::wait(Instant at, Steady::time_point until) {
   progress_.fetch_add(1, std::memory_order_relaxed);
-  Steady::time_point words_at{};
+  Steady::time_point words_at{}, told_at{};
+  bool over = false;
   const bool all = countdown_.wait([&] {
-    if (gone_.load() >= 0) return true;
+    if (gone_.load() >= 0) return over = true;
     // The watchdog wakes us now and then.
     const Steady::time_point now = Steady::now();
+    if (told_at == Steady::time_point{} && told_to_stop()) told_at = now;
+    if (told_at != Steady::time_point{} && now - told_at >= kStopPatience) return over = true;
     if (words_at == Steady::time_point{}) words_at = now + kPatience;
     if (now >= words_at) {
       log_->warn("{}: waiting for {}", place(at), still_missing());
       words_at = now + kPatience;
     }
-    return give_up && give_up();
+    return now >= until;
   });
   progress_.fetch_add(1, std::memory_order_relaxed);
-  if (!all && gone_.load() >= 0) say_lost(at);
+  if (over) break_off(at, still_missing());
   return all;
 }
 
-void Fences::say_lost(Instant at) {
-  const auto gone = static_cast<unsigned>(gone_.load());
+/// The end, for this container alone: somebody is lost, or it was told to stop, or another one was, while `missing`
+/// kept it waiting.
+void Fences::break_off(Instant at, const std::string& missing) {
+  const int gone = gone_.load();
   lock();
   const std::string words = words_;
+  const bool given_up = gone < 0 || given_up_;
   unlock();
-  if (gone == self_)
-    lost_ = "the others gave this container up: " + words;
-  else if (!words.empty())
-    lost_ = words;
-  else
-    lost_ = "container '" + (gone < members_.size() ? members_[gone].name : "?") +
-            "' died or stopped; the run was at " + place(at);
   // Whoever misses this container from now on must not take it for the one that failed.
   Fence& fence = own();
-  fence.wish = FenceWish::FENCE_LOST;
-  fence.who = gone;
-  fence.reason = lost_;
+  fence.wish = given_up ? FenceWish::FENCE_GIVEN_UP : FenceWish::FENCE_LOST;
+  fence.who = gone < 0 ? self_ : static_cast<unsigned>(gone);
+  if (!words.empty())
+    fence.reason = (fence.who == self_ ? "the others gave this container up: " : "") + words;
+  else if (given_up)
+    fence.reason = "container '" + members_[self_].name + "' was told to stop while it waited for " + missing;
+  else
+    fence.reason = "container '" + (fence.who < members_.size() ? members_[fence.who].name : "?") +
+                   "' died or stopped; the run was at " + place(at);
+  broken_off_ = RunReport{.end = given_up ? RunEnd::interrupted : RunEnd::peer_lost,
+                          .reason = given_up && told_to_stop() ? "interrupted" : fence.reason,
+                          .broken_off = true};
+  if (given_up) log_->info("{}: {}", place(at), fence.reason);
   send(at);
 }
 
 /// The next fence of every other member.
-bool Fences::receive(Instant at, const std::function<bool()>& give_up) {
+bool Fences::receive(Instant at, Steady::time_point until) {
   countdown_.add(1);
   lock();
   for (Member& member : members_) {
@@ -201,7 +219,7 @@ bool Fences::receive(Instant at, const std::function<bool()>& give_up) {
   }
   unlock();
   countdown_.done();
-  if (!wait(at, give_up)) return false;
+  if (!wait(at, until)) return false;
   release_fences();
   lock();
   for (Member& member : members_) {
@@ -214,8 +232,11 @@ bool Fences::receive(Instant at, const std::function<bool()>& give_up) {
   for (const dds::SampleBlock* block : blocks_) fences_.push_back(static_cast<const Fence*>(dds::value_of(block)));
   for (const Fence* fence : fences_) {
     if (fence->t == at.time.time_since_epoch().count() && fence->d == at.cycle) continue;
-    lost_ = "container '" + members_[fence->container].name + "' is at " + place({Time(Duration(fence->t)), fence->d}) +
-            " and this one at " + place(at) + ": they are out of step";
+    broken_off_ = RunReport{.end = RunEnd::peer_lost,
+                            .reason = "container '" + members_[fence->container].name + "' is at " +
+                                      place({Time(Duration(fence->t)), fence->d}) + " and this one at " + place(at) +
+                                      ": they are out of step",
+                            .broken_off = true};
     return false;
   }
   return true;
@@ -312,15 +333,19 @@ std::string Fences::still_missing() const {
 
 void Fences::watch() {
   std::uint64_t seen = progress_.load(std::memory_order_relaxed);
-  Steady::time_point since = Steady::now();
+  Steady::time_point since = Steady::now(), assert_at = since;
   std::unique_lock lock(watch_mutex_);
-  while (!watch_end_.wait_for(lock, kAssertPeriod, [this] { return watch_ended_; })) {
+  while (!watch_end_.wait_for(lock, kLookPeriod, [this] { return watch_ended_; })) {
     const Steady::time_point now = Steady::now();
     const std::uint64_t progress = progress_.load(std::memory_order_relaxed);
     if (std::exchange(seen, progress) != progress) since = now;
     const bool waiting = progress % 2 == 1;
     // A container that works in one handler for ever is no better than a dead one, and the others should hear of it.
-    if (waiting || now - since < kLongestHandler) writer_->assert_alive();
+    const bool lives = waiting || now - since < Duration(longest_handler_.load(std::memory_order_relaxed));
+    if (lives && now >= assert_at) {
+      writer_->assert_alive();
+      assert_at = now + kAssertPeriod;
+    }
     if (waiting) countdown_.wake();
   }
 }

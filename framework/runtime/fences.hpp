@@ -5,9 +5,9 @@
 
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -49,19 +49,23 @@ class Fences final : public dds::SampleSink {
 
   /// Waits until every pair of endpoints of the composition is matched, seen from both sides; nothing may be published
   /// before. `end` is when the run ends at the latest: going in, for this container; coming out, for all. If the run
-  /// cannot begin, says why.
+  /// cannot begin, says why. Waits no longer, here and later, when `control.stop` is set.
   std::optional<RunReport> join(const RunControl& control, Time& end);
 
   /// Whether the writers of this container have published anything since the last exchange() that an input hears.
   bool grew();
   /// Tells the others what is known here, and makes of it what is known everywhere. Every sample of the cycle is here
-  /// then, and the inputs that handle them next are marked. False if a container is lost: from then on, this is over.
+  /// then, and the inputs that handle them next are marked. False if a container is lost, or if this one or another was
+  /// told to stop and waited in vain: from then on, this is over.
   bool exchange(Instant at, Round& round);
+  /// From now on a stop that is wanted ends no waiting.
+  void wait_whatever_happens() { stop_ = nullptr; }
   /// After the last cycle: tells everybody every trace. False if a container is lost.
   bool leave(Instant at);
 
-  /// Which container was lost and where the run stood; empty as long as none is.
-  const std::string& lost() const { return lost_; }
+  /// How this container ended apart from the others: which one was lost, or why it was not waited for, and where the
+  /// run stood. Nothing as long as all are together.
+  const std::optional<RunReport>& broken_off() const { return broken_off_; }
   /// By writer index, those of the writers elsewhere; after leave().
   const std::vector<std::pair<unsigned, std::uint64_t>>& traces() const { return traces_; }
 
@@ -70,6 +74,8 @@ class Fences final : public dds::SampleSink {
   void on_status() noexcept override {}
 
  private:
+  using Steady = std::chrono::steady_clock;
+
   /// After so long, and again after as long, whoever waits says for what.
   static constexpr Duration kPatience = std::chrono::seconds(5);
 
@@ -100,11 +106,12 @@ class Fences final : public dds::SampleSink {
 
   kervan_msgs::msg::Fence& own();
   void send(Instant at);
-  bool receive(Instant at, const std::function<bool()>& give_up = {});
-  bool wait(Instant at, const std::function<bool()>& give_up = {});
+  bool receive(Instant at, Steady::time_point until = Steady::time_point::max());
+  bool wait(Instant at, Steady::time_point until = Steady::time_point::max());
   void release_fences();
   void member_gone(unsigned member) noexcept;
-  void say_lost(Instant at);
+  bool told_to_stop() const { return stop_ && stop_->load(std::memory_order_relaxed); }
+  void break_off(Instant at, const std::string& missing);
   std::string still_missing() const;
 
   bool find_members();
@@ -125,14 +132,17 @@ class Fences final : public dds::SampleSink {
   std::vector<const kervan_msgs::msg::Fence*> fences_;  ///< of this round
   std::vector<dds::SampleBlock*> blocks_;               ///< that hold them
   std::vector<std::pair<unsigned, std::uint64_t>> traces_;
-  std::string lost_;
+  std::optional<RunReport> broken_off_;
+  const std::atomic<bool>* stop_ = nullptr;  ///< ends the waiting when set; may be null
 
   Countdown countdown_;
   mutable std::atomic_flag spin_ = ATOMIC_FLAG_INIT;
-  std::atomic<int> gone_{-1};        ///< the first member that was lost
-  std::string words_;                ///< under spin_: what another container said of a lost member
+  std::atomic<int> gone_{-1};        ///< the first member that was lost, or that gave the others up
+  std::string words_;                ///< under spin_: what another container said of it
+  bool given_up_ = false;            ///< under spin_: it was told to stop, and waited in vain
   std::vector<std::uint64_t> left_;  ///< under spin_: writers that were gone before it was known whose they were
 
+  std::atomic<Duration::rep> longest_handler_;
   std::atomic<std::uint64_t> progress_{0};  ///< counts beginnings and ends of waiting: odd while waiting
   std::mutex watch_mutex_;
   std::condition_variable watch_end_;

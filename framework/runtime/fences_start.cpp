@@ -15,13 +15,14 @@ namespace {
 
 using namespace std::chrono_literals;
 using kervan_msgs::msg::Fence;
-using Steady = std::chrono::steady_clock;
 
 /// Matching takes some milliseconds, once in a run, and is asked about so often.
 constexpr Duration kMatchingPeriod = 2ms;
 constexpr std::size_t kPairsNamed = 3;
 
-RunReport cannot_begin(std::string reason) { return {.end = RunEnd::peer_lost, .reason = std::move(reason)}; }
+RunReport cannot_begin(std::string reason) {
+  return {.end = RunEnd::peer_lost, .reason = std::move(reason), .broken_off = true};
+}
 
 std::string pair_text(const Matching& matching, const Matching::Pair& pair) {
   return matching.writers()[pair.writer].name + " -> " + matching.readers()[pair.reader].name;
@@ -90,12 +91,11 @@ void Fences::count_writers_elsewhere() {
 }
 
 std::optional<RunReport> Fences::join(const RunControl& control, Time& end) {
-  const Steady::time_point began = Steady::now();
-  const auto interrupted = [&] { return control.stop && control.stop->load(std::memory_order_relaxed); };
-  const auto too_late = [&] { return Steady::now() - began >= control.members_within; };
+  stop_ = control.stop;
+  longest_handler_ = control.longest_handler.count();
+  const Steady::time_point began = Steady::now(), latest = began + control.members_within;
   const std::string within =
       " within " + std::to_string(std::chrono::ceil<std::chrono::seconds>(control.members_within).count()) + " s";
-  const RunReport stopped{.end = RunEnd::interrupted, .reason = "interrupted"};
   const Instant start{Time(Duration(-1)), 0};
 
   Steady::time_point words_at = began + kPatience;
@@ -104,12 +104,11 @@ std::optional<RunReport> Fences::join(const RunControl& control, Time& end) {
       if (pair.another_layout)
         return cannot_begin(pair_text(matching_, pair) + ": container " + matching_.other_container(pair) +
                             " was built with another version of the message");
-    if (interrupted()) return stopped;
-    if (gone_.load() >= 0) {
-      say_lost(start);
-      return cannot_begin(lost_);
+    if (told_to_stop() || gone_.load() >= 0) {
+      break_off(start, not_found());
+      return broken_off_;
     }
-    if (too_late()) return cannot_begin("waited in vain for " + not_found() + within);
+    if (Steady::now() >= latest) return cannot_begin("waited in vain for " + not_found() + within);
     if (Steady::now() >= words_at) {
       log_->warn("waiting for {}", not_found());
       words_at += kPatience;
@@ -122,11 +121,8 @@ std::optional<RunReport> Fences::join(const RunControl& control, Time& end) {
   fence.next = end.time_since_epoch().count();
   fence.run = hash_of_run();
   send(start);
-  if (!receive(start, [&] { return interrupted() || too_late(); })) {
-    if (!lost_.empty()) return cannot_begin(lost_);
-    if (interrupted()) return stopped;
-    return cannot_begin("waited in vain for " + still_missing() + within);
-  }
+  if (!receive(start, latest))
+    return broken_off_ ? broken_off_ : cannot_begin("waited in vain for " + still_missing() + within);
   for (const Fence* other : fences_) {
     end = std::min(end, Time(Duration(other->next)));
     if (other->run == hash_of_run()) continue;

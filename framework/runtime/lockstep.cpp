@@ -38,6 +38,11 @@ std::vector<std::pair<unsigned, std::uint64_t>> Lockstep::traces_elsewhere() con
   return fences_ ? fences_->traces() : std::vector<std::pair<unsigned, std::uint64_t>>{};
 }
 
+const std::optional<RunReport>& Lockstep::broken_off() const {
+  static const std::optional<RunReport> never;
+  return fences_ ? fences_->broken_off() : never;
+}
+
 void Lockstep::arrived(ComponentInstance& instance) noexcept {
   if (instance.schedule.exchange(1, std::memory_order_acq_rel) != 0) return;
   while (ready_spin_.test_and_set(std::memory_order_acquire)) {
@@ -141,14 +146,13 @@ std::string Lockstep::livelock() const {
   return text;
 }
 
-/// Handles everything at the present time; false, with the report filled, if it never ends or another container is
-/// lost.
+/// Handles everything at the present time; false, with the report filled, if it never ends or the others are
+/// not waited for any more.
 bool Lockstep::run_one_time(RunReport& report) {
   run_due();
   for (agree();; agree()) {
-    if (!lost().empty()) {
-      report.end = RunEnd::peer_lost;
-      report.reason = lost();
+    if (const auto& ended = broken_off()) {
+      report = *ended;
       return false;
     }
     if (!round_.more) break;
@@ -205,6 +209,8 @@ RunReport Lockstep::run(const RunControl& control) {
 }
 
 void Lockstep::end() {
+  // All have agreed to end, so nobody waits in vain any more unless somebody is lost.
+  if (fences_) fences_->wait_whatever_happens();
   // Last words first, then everybody hears them, then nobody speaks any more.
   for (const auto& instance : container_.instances()) instance->deactivate(instant_);
   for (agree(); round_.more && instant_.cycle < kMaxCycles; agree()) run_inputs();

@@ -45,8 +45,8 @@ class Lockstep {
   void advance(Time until);
 
   std::uint64_t cycles() const { return cycles_; }  ///< run so far
-  /// Which other container was lost, and where the run stood; empty if none was.
-  std::string lost() const { return fences_ ? fences_->lost() : std::string(); }
+  /// How this container's run ended apart from the others'; nothing if it did not.
+  const std::optional<RunReport>& broken_off() const;
   /// By writer index, after the end of a run in several containers.
   std::vector<std::pair<unsigned, std::uint64_t>> traces_elsewhere() const;
 
@@ -55,7 +55,7 @@ class Lockstep {
   void run_due();
   void run_inputs();
   void agree();
-  bool together() const { return fences_ && fences_->lost().empty(); }
+  bool together() const { return fences_ && !fences_->broken_off(); }
   std::string livelock() const;
   Time next_due() const;
   void for_each_parallel(const std::vector<ComponentInstance*>& instances,

@@ -68,23 +68,5 @@ TEST(EndFromOutside, IsLeftAloneUnlessThePolicySaysAlways) {
   EXPECT_EQ(run.row("two")["restarts"], 1);
 }
 
-class Lockstep : public testing::TestWithParam<int> {};
-
-TEST_P(Lockstep, ADeadContainerEndsTheRunWithItsName) {
-  Supervised run(pair, "lockstep");
-  wait_for_both(run);
-  ::kill(run.container("one"), GetParam());
-  EXPECT_EQ(run.wait().code, 1);
-  EXPECT_EQ(run.summary()["result"], "aborted");
-  const std::string reason = run.summary()["reason"];
-  const std::string cause =
-      GetParam() == SIGKILL ? "died of SIGKILL" : "was stopped (SIGSTOP), which is as good as dead";
-  EXPECT_TRUE(reason.starts_with("the container one " + cause + " at ")) << reason;
-  EXPECT_TRUE(reason.ends_with(" s; under clock lockstep no container is started again")) << reason;
-}
-
-INSTANTIATE_TEST_SUITE_P(By, Lockstep, testing::Values(SIGKILL, SIGSTOP),
-                         [](const auto& test) { return test.param == SIGKILL ? "Kill" : "Stop"; });
-
 }  // namespace
 }  // namespace kervan::test

@@ -29,6 +29,7 @@ runtime::ContainerSpec full_spec() {
                  .multicast = dds::DomainConfig::Multicast::discovery_only,
                  .processes = 20,
                  .external_id = 4,
+                 .linger = std::chrono::milliseconds(20),
                  .user_data = "kc=brain;"};
   spec.run_folder = "/runs/läb";
   spec.log_to_console = false;
@@ -96,6 +97,7 @@ TEST(SpecJson, GivesEverythingBackAsItWas) {
   EXPECT_EQ(back.domain.multicast, spec.domain.multicast);
   EXPECT_EQ(back.domain.processes, spec.domain.processes);
   EXPECT_EQ(back.domain.external_id, spec.domain.external_id);
+  EXPECT_EQ(back.domain.linger, spec.domain.linger);
   EXPECT_EQ(back.domain.user_data, spec.domain.user_data);
   EXPECT_EQ(back.run_folder, spec.run_folder);
   EXPECT_EQ(back.log_to_console, spec.log_to_console);

@@ -157,6 +157,52 @@ TEST(Distributed, AHandlerThatTakesLongIsNoFailureButIsNamedByThoseWhoWait) {
               HasSubstr("t = 0.000000 s, cycle 0: waiting for the fence of container c1"));
 }
 
+/// Two containers, of which the second does not come out of its first handler before the test lets it.
+class AtTheGate : public ::testing::Test {
+ protected:
+  AtTheGate() : specs_(all_of(1, {2})) {
+    for (ContainerSpec& spec : specs_)
+      spec.components.push_back({.name = "gate",
+                                 .type = "test/gate",
+                                 .container = "c1",
+                                 .ports = {{"out", "/gate", *builtin_profile("state"), PortDirection::output}}});
+  }
+
+  /// The reports of both; the gate opens when the first one has ended.
+  std::vector<runtime::RunReport> run(const RunControl& first, const RunControl& second) {
+    ClosedGate gate;
+    MemberResult inside;
+    std::thread thread([&] { inside = run_member(specs_[1], second); });
+    const MemberResult outside = run_member(specs_[0], first);
+    gate.open();
+    thread.join();
+    return {outside.report, inside.report};
+  }
+
+  std::vector<ContainerSpec> specs_;
+};
+
+TEST_F(AtTheGate, AContainerThatIsToldToStopWaitsForNobodyAndTheOthersAreToldWhy) {
+  std::atomic<bool> stop{false};
+  RunControl told;
+  told.stop = &stop;
+  told.phase = [&](runtime::RunPhase phase) { stop = phase == runtime::RunPhase::active; };
+  const auto reports = run(told, RunControl{});
+  EXPECT_EQ(reports[0].end, RunEnd::interrupted);
+  EXPECT_EQ(reports[0].reason, "interrupted");
+  EXPECT_EQ(reports[1].end, RunEnd::interrupted);
+  EXPECT_EQ(reports[1].reason, "container 'c0' was told to stop while it waited for the fence of container c1");
+  for (const runtime::RunReport& report : reports) EXPECT_TRUE(report.broken_off);
+}
+
+TEST_F(AtTheGate, AContainerThatIsInOneHandlerForTooLongIsLost) {
+  const auto reports = run(RunControl{}, {.longest_handler = 100ms});
+  EXPECT_EQ(reports[0].end, RunEnd::peer_lost);
+  EXPECT_EQ(reports[0].reason, "container 'c1' died or stopped; the run was at t = 0.000000 s, cycle 0");
+  EXPECT_EQ(reports[1].end, RunEnd::peer_lost);
+  EXPECT_EQ(reports[1].reason, "the others gave this container up: " + reports[0].reason);
+}
+
 TEST(Distributed, AMemberThatNeverComesIsNamed) {
   const MemberResult result = run_member(all_of(1, {3})[0], {.members_within = 300ms});
   EXPECT_EQ(result.report.end, RunEnd::peer_lost);

@@ -156,6 +156,17 @@ class Sleeper final : public Component {
   }
 };
 
+std::atomic<bool> gate_closed{false};
+
+class Gate final : public Component {
+  Output<Range> out_{this, "out", qos::state, "Something."};
+  Timer tick_{this, 1s, &Gate::on_tick};
+  void on_tick(Time) {
+    gate_closed.wait(true);
+    out_.publish(Range{});
+  }
+};
+
 QosProfile profile(const char* name) { return *builtin_profile(name); }
 
 }  // namespace
@@ -202,6 +213,13 @@ runtime::ContainerSpec stations(std::uint64_t seed, const Placement& placement, 
   return spec;
 }
 
+ClosedGate::ClosedGate() { gate_closed = true; }
+
+void ClosedGate::open() {
+  gate_closed = false;
+  gate_closed.notify_all();
+}
+
 std::string new_tag() {
   static std::atomic<unsigned> number{0};
   return "kervan-test-" + std::to_string(::getpid()) + "-" + std::to_string(number++);
@@ -213,6 +231,7 @@ ComponentRegistry station_registry() {
   registry.add(define<Stopper>("test/stopper"));
   registry.add(define<Ball>("test/ball"));
   registry.add(define<Sleeper>("test/sleeper"));
+  registry.add(define<Gate>("test/gate"));
   return registry;
 }
 

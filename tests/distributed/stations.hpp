@@ -27,8 +27,19 @@ runtime::ContainerSpec stations(std::uint64_t seed, const Placement& placement, 
 /// A tag that no other run has.
 std::string new_tag();
 
+/// Closed while it exists: the handler of a `test/gate` does not return before it opens. One at a time.
+class ClosedGate {
+ public:
+  ClosedGate();
+  ~ClosedGate() { open(); }
+  ClosedGate(const ClosedGate&) = delete;
+  ClosedGate& operator=(const ClosedGate&) = delete;
+  void open();
+};
+
 /// Knows the stations, and `test/stopper`, which ends the run at 100 ms, `test/ball`, which answers each sample with
-/// one of its own, and `test/sleeper`, which takes seconds to handle one timer.
+/// one of its own, `test/sleeper`, which takes seconds to handle one timer, and `test/gate`, whose first timer does not
+/// return while there is a closed gate.
 ComponentRegistry station_registry();
 
 struct MemberResult {

@@ -229,7 +229,9 @@ TEST(WallOperationsLeak, LoadingAndUnloadingAHundredTimesLeavesNothingBehind) {
   RecordProperty("grown_kB", static_cast<int>(grown));
   EXPECT_EQ(Ticker::alive, 1);
   EXPECT_EQ(running.container->instances().size(), 4u);
-  if (kResidentTellsLeaks) EXPECT_LT(grown, 4096) << rounds / 2 << " rounds, from " << before << " kB";
+  if (kResidentTellsLeaks) {
+    EXPECT_LT(grown, 4096) << rounds / 2 << " rounds, from " << before << " kB";
+  }
 }
 
 }  // namespace
