@@ -161,13 +161,13 @@ HostNetwork network_of(const Composition& composition, const Container& containe
     if (here != nullptr && other != here->name && !find(composition, other)->address.empty())
       network.peers.push_back(find(composition, other)->address);
   using Multicast = HostNetwork::Multicast;
-  if (!composition.domain.multicast) {
+  if (!composition.domain.multicast)
     network.multicast = Multicast::no;
-    // Processes of this host no longer hear each other either, unless they are told to look here too.
-    network.peers.push_back(here != nullptr && !here->address.empty() ? here->address : "127.0.0.1");
-  } else if (!network.peers.empty()) {
+  else if (!network.peers.empty())
     network.multicast = Multicast::discovery_only;
-  }
+  // Where the interface has no multicast, processes of this host find each other only if they look here too.
+  if (network.multicast != Multicast::yes)
+    network.peers.push_back(here != nullptr && !here->address.empty() ? here->address : "127.0.0.1");
   if (!network.peers.empty()) {
     // Each peer is asked at every port it could have, so there are no more of those than the composition needs.
     int most = 0;

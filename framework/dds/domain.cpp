@@ -2,6 +2,7 @@
 
 #include <dds/dds.h>
 
+#include "framework/component/error.hpp"
 #include "framework/dds/sample_block.hpp"
 
 namespace kervan::dds {
@@ -27,11 +28,33 @@ std::string reasons(Reports& reports) {
   return text.empty() ? "Cyclone DDS gave no reason" : text;
 }
 
+void require_in(const char* what, std::int64_t value, std::int64_t least, std::int64_t most) {
+  if (value < least || value > most)
+    throw ConfigError({}, "domain." + std::string(what) + ": " + std::to_string(value) +
+                              " is out of range; allowed: " + std::to_string(least) + " .. " + std::to_string(most));
+}
+
+/// What Cyclone would take for something else, or say in a way that nobody can read.
+void require_usable(const DomainConfig& config) {
+  // Above, there are no UDP ports any more.
+  if (config.external_id)
+    require_in("external_id", *config.external_id, 0, 232);
+  else
+    require_in("id", config.id, 0, 232);
+  require_in("processes", config.processes, 1, 120);
+  if (config.linger < Duration::zero()) throw ConfigError({}, "domain.linger: must not be negative");
+  if (config.interface.empty() && config.address.empty())
+    throw ConfigError({}, "domain: needs the name of a network interface or its address");
+  for (const std::string& peer : config.peers)
+    if (peer.empty()) throw ConfigError({}, "domain.peers: an address is empty");
+}
+
 }  // namespace
 
 std::string cyclone_configuration(const DomainConfig& config) {
   std::string xml = "<General>";
   if (!config.network) return xml + "<Transport>none</Transport></General>";
+  require_usable(config);
   // The loopback interface carries multicast but does not say so, and takes the largest datagrams in one piece, which
   // saves a fifth of the time a large message takes. Index and lease: Cyclone's defaults let only nine processes share
   // an interface without multicast, and take ten seconds to notice that a peer died.

@@ -39,7 +39,7 @@ struct DomainConfig {
   std::string user_data = {};  ///< what the participant says of itself to every peer; see participant_identity()
 };
 
-/// The configuration that Cyclone is given, as XML.
+/// The configuration that Cyclone is given, as XML. Throws ConfigError for values that no network has.
 std::string cyclone_configuration(const DomainConfig& config);
 
 struct SampleType;

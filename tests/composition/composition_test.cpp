@@ -331,12 +331,12 @@ TEST(Hosts, FindEachOtherByTheirAddresses) {
   const auto composition = loaded(hosts("{hosts: " + two_hosts + "}", on_two_hosts));
   const HostNetwork base = network_of(composition, composition.containers[0]);
   EXPECT_EQ(base.interface, "eth0");
-  EXPECT_EQ(base.peers, (std::vector<std::string>{"10.0.0.2"}));
+  EXPECT_EQ(base.peers, (std::vector<std::string>{"10.0.0.2", "10.0.0.1"})) << "others, and whoever else is here";
   EXPECT_EQ(base.multicast, Multicast::discovery_only);
   const HostNetwork robot = network_of(composition, composition.containers[1]);
   EXPECT_EQ(robot.interface, "");
   EXPECT_EQ(robot.address, "10.0.0.2");
-  EXPECT_EQ(robot.peers, (std::vector<std::string>{"10.0.0.1"}));
+  EXPECT_EQ(robot.peers, (std::vector<std::string>{"10.0.0.1", "10.0.0.2"}));
   EXPECT_EQ(robot.processes, base.processes) << "each must look at every port that the other may have";
   EXPECT_EQ(robot.processes, 2 + 16);
 }
