@@ -113,11 +113,28 @@ void Members::on_sample(const dds::Arrival& arrival) noexcept {
 
 void Members::on_writer_gone(std::uint64_t writer) noexcept {
   {
-    // A container that was restarted has spoken through another writer since, and is there.
+    // A container that was restarted has spoken through another writer since, and is there. One that did not answer
+    // any more goes on not answering.
     const std::lock_guard lock(mutex_);
-    std::erase_if(heard_, [&](const auto& entry) { return entry.second.writer == writer; });
+    std::erase_if(heard_, [&](const auto& entry) {
+      const auto& [name, heard] = entry;
+      if (heard.writer != writer || !heard.other.answers) return false;
+      left_.insert_or_assign(name, heard);
+      return true;
+    });
   }
   changed_();
+}
+
+void Members::on_writer_lost(std::uint64_t writer) noexcept {
+  {
+    // It was said to be gone just before, and is not: it is silent.
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, heard] : left_)
+      if (heard.writer == writer) heard_.emplace(name, heard);
+    std::erase_if(left_, [&](const auto& entry) { return entry.second.writer == writer; });
+  }
+  set_answers(writer, false);
 }
 
 }  // namespace kervan::runtime

@@ -36,7 +36,8 @@ class Members final : public dds::SampleSink {
     kervan_msgs::msg::ContainerStatus status;  ///< the latest
     bool answers = true;                       ///< false: its process was silent for longer than it promised
   };
-  /// Every other container that is there, members or not, by name.
+  /// Every other container that is there, members or not, by name; also one that was there and does not answer, dead
+  /// or alive.
   std::map<std::string, Other> others() const;
 
   /// Hash of what this container's composition consists of.
@@ -44,7 +45,7 @@ class Members final : public dds::SampleSink {
 
   void on_sample(const dds::Arrival& arrival) noexcept override;
   void on_writer_gone(std::uint64_t writer) noexcept override;
-  void on_writer_lost(std::uint64_t writer) noexcept override { set_answers(writer, false); }
+  void on_writer_lost(std::uint64_t writer) noexcept override;
   void on_writer_alive(std::uint64_t writer) noexcept override { set_answers(writer, true); }
   void on_status() noexcept override {}
 
@@ -60,6 +61,7 @@ class Members final : public dds::SampleSink {
   kervan_msgs::msg::ContainerStatus own_;
   mutable std::mutex mutex_;
   std::map<std::string, Heard> heard_;  ///< under the mutex, by container
+  std::map<std::string, Heard> left_;   ///< under the mutex: the last word of those that are gone
   dds::Writer writer_;
   dds::Reader reader_;  ///< last: it calls into the members above
 };

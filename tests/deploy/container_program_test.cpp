@@ -1,9 +1,13 @@
 // kervan-container as somebody calls it by hand.
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <unistd.h>
 
 #include <fstream>
+#include <memory>
 
 #include "deploy/container/spec_json.hpp"
+#include "tests/program/eventually.hpp"
 #include "tests/program/program.hpp"
 
 namespace kervan::test {
@@ -60,6 +64,34 @@ TEST_F(ContainerProgram, EndsWhenItsTimeIsUp) {
   const Result result = call("spec.json one --for-ns 1000000");
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(result.err, "");
+}
+
+/// Of three containers the third never comes, and the second stands still while the first waits for both.
+TEST_F(ContainerProgram, NamesAContainerThatDoesNotAnswer) {
+  runtime::ContainerSpec spec;
+  spec.members = {"left", "middle", "right"};
+  spec.domain = {.id = 94, .tag = "does-not-answer-" + std::to_string(::getpid())};
+  spec.run_folder = folder_.path();
+  spec.log_to_console = false;
+  std::vector<std::unique_ptr<Process>> processes;
+  for (const char* name : {"left", "middle"}) {
+    spec.name = name;
+    const std::string file = std::string(name) + ".json";
+    container::write_spec(spec, folder_.path() / file);
+    processes.push_back(std::make_unique<Process>(Command{KERVAN_CONTAINER_PROGRAM, {file, name}}, folder_.path()));
+  }
+  const auto left_says = [&](const std::string& text) {
+    return eventually(
+        [&] { return text_of(folder_.path() / "log-left.txt").find(" s: " + text + "\n") != std::string::npos; });
+  };
+  EXPECT_TRUE(left_says("container 'right' is not there"));
+  processes[1]->signal(SIGSTOP);
+  EXPECT_TRUE(left_says("container 'middle' does not answer; container 'right' is not there"));
+  processes[1]->signal(SIGCONT);
+  for (const auto& process : processes) {
+    process->signal(SIGINT);
+    EXPECT_EQ(process->wait().code, 0);
+  }
 }
 
 }  // namespace

@@ -6,9 +6,15 @@
 
 #include <cinttypes>
 #include <cstdio>
+#include <deque>
+#include <mutex>
 #include <thread>
 
 #include "framework/component/error.hpp"
+#include "framework/component/sample.hpp"
+#include "framework/dds/endpoint.hpp"
+#include "kervan_msgs/msg/Fence.hpp"
+#include "sensor_msgs/msg/Range.hpp"
 #include "tests/conformance/wire/peer.hpp"
 #include "tests/distributed/stations.hpp"
 #include "tests/program/program.hpp"
@@ -218,6 +224,97 @@ TEST(Distributed, AMemberThatRunsAnotherCompositionIsNamed) {
     EXPECT_EQ(results[i].report.reason,
               "container c" + std::to_string(1 - i) + " runs another composition, or places it differently");
   }
+}
+
+/// Plays the container c1 of two to the container c0: says the same of itself in every fence as the other one does. Its
+/// only component writes /numbers.
+class Mirror final : public dds::SampleSink {
+ public:
+  explicit Mirror(const std::string& tag)
+      : domain_({.id = 41, .tag = tag, .external_id = 40}),
+        numbers_(domain_, "/numbers", type_support<sensor_msgs::msg::Range>(), *builtin_profile("event"),
+                 dds::CyclonePart::carrier, 0, 0),
+        fences_(domain_, "/kervan/fence", type_support<Fence>(), kProfile, dds::CyclonePart::whole_profile, 0, 1),
+        reader_(domain_, "/kervan/fence", type_support<Fence>(), kProfile, dds::CyclonePart::whole_profile, *this, 1) {}
+
+  /// Answers what has come; in the answer to the fence of t = 0, cycle 0, promises so many numbers.
+  void answer(std::uint64_t promised) {
+    fences_.assert_alive();
+    std::unique_lock lock(mutex_);
+    for (; !heard_.empty(); heard_.pop_front()) {
+      dds::SampleBlock* const block = fences_.loan(true);
+      auto& fence = *static_cast<Fence*>(dds::mutable_value_of(block));
+      fence = *heard_.front();
+      fence.container = 1;
+      fence.traces.clear();
+      if (fence.t == 0 && fence.d == 0) {
+        fence.more = true;
+        fence.sent.emplace_back().sent = promised;
+      }
+      fences_.publish(block, Time{}, false);
+      answered_ = std::max(answered_, fence.t);
+    }
+  }
+  bool has_promised() const { return answered_ == 0; }
+  void publish_number() { numbers_.publish(numbers_.loan(true), Time{}, false); }
+
+  void on_sample(const dds::Arrival& arrival) noexcept override {
+    if (static_cast<const Fence*>(dds::value_of(arrival.block))->container != 0) return;
+    const std::lock_guard lock(mutex_);
+    heard_.emplace_back(arrival.block);
+  }
+  void on_writer_gone(std::uint64_t) noexcept override {}
+  void on_status() noexcept override {}
+
+ private:
+  using Fence = kervan_msgs::msg::Fence;
+  /// As of every container.
+  inline static const QosProfile kProfile{
+      .name = "fence", .depth = 0, .liveliness = Liveliness::manual, .lease = 1200ms, .trace = false};
+
+  std::mutex mutex_;
+  std::deque<Sample<Fence>> heard_;
+  std::int64_t answered_ = -1;
+  dds::Domain domain_;
+  dds::Writer numbers_, fences_;
+  dds::Reader reader_;  // last: it calls into the members above
+};
+
+TEST(Distributed, SamplesThatAreAnnouncedAndDoNotComeAreNamed) {
+  const Folder folder;
+  const QosProfile event = *builtin_profile("event");
+  const std::string tag = new_tag();
+  ContainerSpec spec = stations(1, {2}, 0, tag);
+  spec.run_folder = folder.path();
+  const auto ball = [&](const char* name, const char* container, const char* in, const char* out) {
+    return runtime::ComponentSpec{
+        .name = name,
+        .type = "test/ball",
+        .container = container,
+        .ports = {{"in", in, event, PortDirection::input}, {"out", out, event, PortDirection::output}}};
+  };
+  spec.components = {ball("speaker", "c1", "/nothing", "/numbers"), ball("hearer", "c0", "/numbers", "/echo")};
+  MemberResult result;
+  std::atomic<bool> ended{false};
+  Mirror mirror(tag);
+  std::thread thread([&] {
+    result = run_member(spec, {.limit = 50ms});
+    ended = true;
+  });
+  int published = 0;
+  EXPECT_TRUE(eventually([&] {
+    mirror.answer(3);
+    if (!mirror.has_promised()) return ended.load();
+    if (published == 0) mirror.publish_number(), ++published;
+    if (published == 1 && text_of(folder.path() / "log-c0.txt").find(" samples of ") != std::string::npos)
+      for (; published < 3; ++published) mirror.publish_number();
+    return ended.load();
+  }));
+  thread.join();
+  EXPECT_EQ(result.report.end, RunEnd::time_limit) << result.report.reason;
+  EXPECT_THAT(text_of(folder.path() / "log-c0.txt"),
+              HasSubstr("t = 0.000000 s, cycle 0: waiting for hearer.in, which has 1 of 3 samples of speaker.out in "
+                        "container c1\n"));
 }
 
 std::string refusal_of(const ContainerSpec& spec) {

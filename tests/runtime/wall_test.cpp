@@ -42,7 +42,8 @@ class Blocking final : public kervan::Component {
   kervan::Input<Time> in_{this, "in", kervan::qos::state, &Blocking::on_message, "Work."};
   kervan::Output<Time> out_{this, "out", kervan::qos::state, "Done."};
   void on_message(const Time& message, kervan::Time) {
-    if (thread == std::thread::id()) thread = std::this_thread::get_id();  // later ones may belong to the end of the run
+    if (thread == std::thread::id())
+      thread = std::this_thread::get_id();  // later ones may belong to the end of the run
     out_.publish(message);
   }
 
@@ -63,6 +64,29 @@ class Boss final : public kervan::Component {
 
  public:
   static inline std::thread::id thread;
+};
+
+class Twice final : public kervan::Component {
+  kervan::Output<Time> out_{this, "out", kervan::qos::event, "Two at once."};
+  void on_activate(kervan::Time) override {
+    out_.publish(Time{});
+    out_.publish(Time{});
+  }
+};
+
+constexpr auto kOld = 100ms;
+
+/// Works longer on the first message than the second one may be old.
+class Slow final : public kervan::Component {
+  kervan::Input<Time> in_{this, "in", kervan::qos::event.max_age(kOld), &Slow::on_message, "Not too old."};
+  kervan::Input<Time> any_{this, "any", kervan::qos::event, &Slow::on_any, "Of any age."};
+  int heard_ = 0;
+  void on_message(const Time&, kervan::Time) {
+    if (heard_++ == 0) std::this_thread::sleep_for(2 * kOld);
+  }
+  void on_any(const Time&, kervan::Time) {
+    if (++heard_ == 4) finish("heard everything");
+  }
 };
 
 class WallClock : public ::testing::TestWithParam<unsigned> {};
@@ -164,6 +188,29 @@ TEST(WallClockStop, TheStopFlagEndsARunInGoodOrder) {
   const std::atomic<bool> stop{true};
   EXPECT_EQ(container.run({.stop = &stop}).end, kervan::runtime::RunEnd::interrupted);
   EXPECT_EQ(container.instances().front()->state(), kervan::ComponentState::stopped);
+}
+
+TEST(Wall, WhatIsHandledTooLateIsCountedByThePortThatMinds) {
+  kervan::ComponentRegistry registry({});
+  registry.add(kervan::test::define<Twice>("test/twice"));
+  registry.add(kervan::test::define<Slow>("test/slow"));
+  kervan::runtime::ContainerSpec spec;
+  spec.domain = {.id = 209, .network = false};
+  spec.log_to_console = false;
+  const kervan::QosProfile event = *kervan::builtin_profile("event");
+  const auto in = kervan::PortDirection::input, out = kervan::PortDirection::output;
+  spec.components = {
+      {.name = "twice", .type = "test/twice", .ports = {{"out", "/numbers", event, out}}},
+      {.name = "slow", .type = "test/slow", .ports = {{"in", "/numbers", event, in}, {"any", "/numbers", event, in}}}};
+  kervan::runtime::Container container(spec, registry);
+  EXPECT_EQ(container.run({.limit = 60s}).end, kervan::runtime::RunEnd::finished);
+  const auto& inputs = container.find("slow")->inputs();
+  ASSERT_EQ(inputs.size(), 2u);
+  EXPECT_EQ(inputs[0]->counters().handled, 2u);
+  EXPECT_GE(inputs[0]->counters().late, 1u);
+  EXPECT_GE(inputs[0]->counters().worst_latency, 2 * kOld);
+  EXPECT_EQ(inputs[1]->counters().handled, 2u);
+  EXPECT_EQ(inputs[1]->counters().late, 0u);
 }
 
 }  // namespace
