@@ -38,7 +38,7 @@ bool DriveGuard::command(Time received, const geometry::Twist2& wanted) {
 }
 
 geometry::Twist2 DriveGuard::step(Time now) {
-  const bool fresh = received_ && now + params_.period <= *received_ + params_.timeout;
+  const bool fresh = received_ && now + params_.period + params_.travel <= *received_ + params_.timeout;
   if (fresh)
     state_ = DriveState::following;
   else if (state_ == DriveState::following)

@@ -12,7 +12,8 @@ namespace kervan::safety {
 /// Limits hold for both signs. The defaults are a Pioneer P3-DX as MobileSim drives it.
 struct DriveGuardParams {
   Duration period = std::chrono::milliseconds(50);    ///< between two calls of step()
-  Duration timeout = std::chrono::milliseconds(250);  ///< age at which a command counts no more
+  Duration timeout = std::chrono::milliseconds(250);  ///< age of a command at which the drive brakes, at the latest
+  Duration travel = std::chrono::milliseconds(50);    ///< that a command may take on its way from here to the drive
   double max_speed = 1.0;                             ///< m/s
   double max_turn = 1.74;                             ///< rad/s
   double acceleration = 0.3;                          ///< m/s2
@@ -42,9 +43,10 @@ class DriveGuard {
   /// Whoever received the last command knows that it is too old, however young it looked when it was given here.
   void forget() { received_.reset(); }
 
-  /// What the drive shall do from `now` for one period. Full braking begins so early that no period in which the
-  /// command turns too old is still driven: later than timeout - period and no later than timeout after the last
-  /// command. From then on the speed falls at `deceleration`, the turning rate at `turn_acceleration`, both to zero.
+  /// What the drive shall do for one period, from `now` or, if the way to it is long, until `travel` later. Full
+  /// braking begins so early that the drive spends no part of a period on a command that has turned too old: no later
+  /// than timeout - travel after the last command, and less than a period before that. From then on the speed falls at
+  /// `deceleration`, the turning rate at `turn_acceleration`, both to zero.
   geometry::Twist2 step(Time now);
 
   DriveState state() const { return state_; }

@@ -14,7 +14,8 @@ struct DriveGuardComponentParams {
   template <class Visitor>
   void describe(Visitor& v) {
     v(guard.period, "period", {.min = 0.005, .max = 0.2, .help = "Time between two commands to the drive."});
-    v(guard.timeout, "timeout", {.min = 0.01, .max = 5.0, .help = "Brakes no later than this after the last command."});
+    v(guard.timeout, "timeout", {.min = 0.01, .max = 5.0, .help = "The drive brakes by then after the last command."});
+    v(guard.travel, "travel", {.min = 0.0, .max = 1.0, .help = "Time that a command may take to the drive."});
     v(guard.max_speed, "max_speed",
       {.unit = "m/s", .min = 0.0, .max = 5.0, .help = "Highest speed, either way.", .live = true});
     v(guard.max_turn, "max_turn",
@@ -35,8 +36,7 @@ class DriveGuardComponent final : public Component {
   DriveGuard guard_{params_.guard};
   // The port judges the age by when a command was received, the guard by when it was handled. They differ when this
   // component was held up, and then the port is right.
-  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw",
-                                                  qos::command.max_age(params_.guard.timeout - params_.guard.period),
+  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw", qos::command.max_age(oldest(params_.guard)),
                                                   &DriveGuardComponent::on_command, "Speed that the controller wants."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel", qos::command, "Speed for the drive."};
   Timer tick_{this, params_.guard.period, &DriveGuardComponent::on_tick};
@@ -49,10 +49,13 @@ class DriveGuardComponent final : public Component {
   void on_parameters_changed() override { guard_.set_params(params_.guard); }
 
   static const DriveGuardComponentParams& checked(const DriveGuardComponentParams& params) {
-    if (params.guard.timeout < params.guard.period)
-      throw ParameterError("timeout", "it is shorter than the period, so no command would ever be driven");
+    if (oldest(params.guard) < Duration::zero())
+      throw ParameterError("timeout", "it is shorter than period and travel, so no command would ever be driven");
     return params;
   }
+
+  /// Command that is driven for another period.
+  static Duration oldest(const DriveGuardParams& guard) { return guard.timeout - guard.period - guard.travel; }
 
   void on_command(const geometry_msgs::msg::TwistStamped& wanted, Time now) {
     last_refused_ = !guard_.command(now, geometry::twist_of(wanted.twist));

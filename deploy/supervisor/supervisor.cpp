@@ -43,9 +43,12 @@ struct Ladder {
 };
 /// The run is over: all end by themselves, and write their files on the way.
 constexpr Ladder kOrderly{500ms, 2s, 8s, 9s};
-/// Somebody wants it to end, or something broke: everything is gone within 3 s. Under lockstep those who are left
-/// notice within 2 s that somebody is missing, and end with what results there are.
+/// Somebody wants it to end: everything is gone within 3 s.
 constexpr Ladder kQuick{0s, 1s, 2400ms, 2800ms};
+/// Something broke. A writer whose reader died waits a second for it when it is taken apart; that must not add up over
+/// the containers. Under lockstep those who are left notice within 2 s that somebody is missing, and end with what
+/// results there are.
+constexpr Ladder kBroken{0s, 200ms, 2400ms, 2800ms};
 
 /// Takes the signals that end a run, and those about children, off their usual way: they are read from a descriptor.
 class SignalGuard {
@@ -397,7 +400,7 @@ void Supervisor::begin_ending(End how) {
 
 void Supervisor::advance_ending() {
   if (end_ == End::running) return;
-  const Ladder& ladder = end_ == End::orderly ? kOrderly : kQuick;
+  const Ladder& ladder = end_ == End::orderly ? kOrderly : result_.aborted.empty() ? kQuick : kBroken;
   const Duration passed = now() - ending_since_;
   const bool kill = end_ == End::at_once || passed >= ladder.kill;
   bool in_turn = true;

@@ -38,13 +38,13 @@ TEST(DriveGuardComponent, StandsUntilTheFirstCommand) {
   EXPECT_EQ(harness.reason(), "cmd_vel_raw: nothing received yet");
 }
 
-TEST(DriveGuardComponent, BrakesWithin250MillisecondsAndStandsAfterItsBrakingTime) {
+TEST(DriveGuardComponent, BrakesWithin200MillisecondsSoThatTheDriveDoesWithin250AndStandsAfterItsBrakingTime) {
   Harness harness("safety/drive_guard");
   drive(harness, 3s);
   EXPECT_EQ(speed(harness), 0.5);
   EXPECT_EQ(harness.state(), ComponentState::active);
   harness.feed("cmd_vel_raw", twist_of(0.5, 0.0));
-  harness.advance(199ms);
+  harness.advance(149ms);
   EXPECT_EQ(speed(harness), 0.5);
   harness.advance(51ms);
   EXPECT_LT(speed(harness), 0.5);
@@ -68,8 +68,15 @@ TEST(DriveGuardComponent, RefusesACommandThatIsNotFiniteAndBrakes) {
   EXPECT_EQ(harness.reason(), "cmd_vel_raw: refused a command that is not finite");
 }
 
-TEST(DriveGuardComponent, RefusesATimeOutShorterThanItsPeriod) {
-  EXPECT_THROW(Harness("safety/drive_guard", {{"period", 0.1}, {"timeout", 0.05}}), ParameterError);
+TEST(DriveGuardComponent, RefusesATimeOutInWhichNoCommandReachesTheDrive) {
+  EXPECT_NO_THROW(Harness("safety/drive_guard", {{"period", 0.1}, {"travel", 0.1}, {"timeout", 0.2}}));
+  try {
+    Harness("safety/drive_guard", {{"period", 0.1}, {"travel", 0.1}, {"timeout", 0.19}});
+    FAIL() << "it was taken";
+  } catch (const ParameterError& error) {
+    EXPECT_EQ(error.parameter(), "timeout");
+    EXPECT_EQ(error.message(), "it is shorter than period and travel, so no command would ever be driven");
+  }
 }
 
 TEST(DriveGuardComponent, SaysAZeroCommandAsItsLastWord) {

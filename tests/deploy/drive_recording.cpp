@@ -1,0 +1,60 @@
+#include "tests/deploy/drive_recording.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "tests/program/program.hpp"
+
+namespace kervan::test {
+namespace {
+
+constexpr double kStanding = 0.05;  ///< m/s
+
+std::optional<double> braking(const std::vector<SpeedAt>& speed, double last, double next) {
+  const auto at = [&](double time) {
+    return std::lower_bound(speed.begin(), speed.end(), time, [](const SpeedAt& s, double t) { return s.time < t; });
+  };
+  const auto latest = at(last + kLongest), end = at(next);
+  if (latest == speed.end() || std::abs(latest->value) < kStanding) return std::nullopt;
+  auto begin = end;
+  for (auto one = at(last); one != end && one + 1 != speed.end(); ++one) {
+    const double fall = std::abs(one->value) - std::abs((one + 1)->value), dt = (one + 1)->time - one->time;
+    const bool full = fall >= 0.95 * kFullBraking * dt;
+    if (full && begin == end) begin = one;
+    if (!full && (one + 1)->time < last + kLongest) begin = end;  // it had only slowed down
+  }
+  if (begin == end) return std::numeric_limits<double>::infinity();
+  double after = begin->time - last;
+  for (auto one = begin; one != end && one->value != 0.0; ++one)
+    after = std::max(after, one->time - last - (std::abs(begin->value) - std::abs(one->value)) / kFullBraking);
+  return after;
+}
+
+}  // namespace
+
+DriveRecording read_drive(const std::string& csv) {
+  DriveRecording recording;
+  for (const std::string& line : lines_of(csv)) {
+    std::istringstream fields(line);
+    std::string what, time, value;
+    std::getline(fields, what, ',');
+    std::getline(fields, time, ',');
+    std::getline(fields, value, ',');
+    auto& samples = what == "raw" ? recording.raw : what == "command" ? recording.command : recording.speed;
+    samples.push_back({std::stod(time) * 1e-9, std::stod(value)});
+  }
+  return recording;
+}
+
+std::vector<Silence> silences(const std::vector<SpeedAt>& commands, const std::vector<SpeedAt>& speed) {
+  std::vector<Silence> found;
+  for (std::size_t i = 0; i + 1 < commands.size(); ++i) {
+    const double last = commands[i].time, next = commands[i + 1].time;
+    if (next - last > kLongest + 1e-6) found.push_back({last, next, braking(speed, last, next)});
+  }
+  return found;
+}
+
+}  // namespace kervan::test

@@ -1,0 +1,38 @@
+/// What test/drive_recorder wrote down, and whether a robot that nobody commanded any more braked.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kervan::test {
+
+/// A speed in m/s, and when it was wanted, told or driven; s of the simulator.
+struct SpeedAt {
+  double time, value;
+};
+
+struct DriveRecording {
+  std::vector<SpeedAt> raw;      ///< what the controller wanted
+  std::vector<SpeedAt> command;  ///< what the drive was told
+  std::vector<SpeedAt> speed;    ///< what it did, every step
+};
+
+/// Reads drive.csv.
+DriveRecording read_drive(const std::string& csv);
+
+constexpr double kFullBraking = 0.6;  ///< m/s2, of robots/p3dx.yaml
+constexpr double kLongest = 0.250;    ///< s, from the last fresh command to the beginning of full braking
+
+/// A time of more than kLongest without a command.
+struct Silence {
+  double last, next;  ///< s, when the commands before and after it came
+  /// Seconds from `last` until full braking began; time in which it did not go on, before the robot stood or `next`
+  /// came, is added. Infinite if it never began, nothing if the robot stood anyway.
+  std::optional<double> braking;
+};
+
+/// All of them that ended.
+std::vector<Silence> silences(const std::vector<SpeedAt>& commands, const std::vector<SpeedAt>& speed);
+
+}  // namespace kervan::test
