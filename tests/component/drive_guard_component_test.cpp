@@ -74,7 +74,7 @@ TEST(DriveGuardComponent, RefusesATimeOutInWhichNoCommandReachesTheDrive) {
     Harness("safety/drive_guard", {{"period", 0.1}, {"travel", 0.1}, {"timeout", 0.19}});
     FAIL() << "it was taken";
   } catch (const ParameterError& error) {
-    EXPECT_EQ(error.parameter(), "timeout");
+    EXPECT_EQ(error.parameter(), "subject.timeout");
     EXPECT_EQ(error.message(), "it is shorter than period and travel, so no command would ever be driven");
   }
 }

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
+#include "tests/deploy/drive_recording.hpp"
 #include "tests/deploy/supervised.hpp"
 
 namespace kervan::test {
@@ -79,6 +80,33 @@ TEST(Crash, ThatRepeatsItselfAtTheStartEndsTheRunAfterFiveRestarts) {
             std::string::npos)
       << result.err;
 }
+
+class CrashBesideTheController : public testing::TestWithParam<const char*> {};
+
+TEST_P(CrashBesideTheController, AtEveryStartEndsTheRunAndTheRobotNeverMoved) {
+  Supervised run(
+      lab_over({{"sim", "[world, recorder]"},
+                {"control", "[r1/control, bad]"},
+                {"rest", "[r1/planner, r1/follower, r1/guard, report, mission]"}},
+               {kDriveRecorder, "bad: {type: test/saboteur, params: {where: " + std::string(GetParam()) + "}}"}),
+      "sim, step: 10ms, pace: real-time");
+  EXPECT_EQ(run.wait().code, 1);
+  EXPECT_EQ(run.summary()["result"], "aborted");
+  const std::string reason = run.summary()["reason"];
+  EXPECT_TRUE(
+      reason.starts_with("the container control stays stopped: it was started again 5 times within 30 s; the "
+                         "last time it crashed: SIGSEGV in bad"))
+      << reason;
+  EXPECT_EQ(run.row("control")["restarts"], 5);
+  const DriveRecording recording = read_drive(run.file("drive.csv"));
+  // The others wait for a container that cannot be made, but not for one that has been.
+  EXPECT_EQ(recording.speed.empty(), std::string(GetParam()) == "constructor");
+  for (const auto* stream : {&recording.raw, &recording.command, &recording.speed})
+    EXPECT_TRUE(std::ranges::all_of(*stream, [](const SpeedAt& one) { return one.value == 0.0; }));
+}
+
+INSTANTIATE_TEST_SUITE_P(In, CrashBesideTheController, testing::Values("constructor", "activate"),
+                         [](const auto& test) { return std::string(test.param); });
 
 TEST(Crash, OfAContainerThatHadBeenActiveLeavesTheOthersRunning) {
   Supervised run(with_saboteur("where: timer, after: 200ms", "policy: on-failure, max: 2, window: 30s"));

@@ -7,6 +7,11 @@
 
 namespace kervan::test {
 
+/// The component of the laboratory that writes drive.csv.
+inline constexpr const char* kDriveRecorder =
+    "recorder: {type: test/drive_recorder, remap: {raw: r1/guard/cmd_vel_raw, command: r1/guard/cmd_vel, "
+    "truth: world/r1/truth}}";
+
 /// A speed in m/s, and when it was wanted, told or driven; s of the simulator.
 struct SpeedAt {
   double time, value;

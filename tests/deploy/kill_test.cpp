@@ -59,15 +59,13 @@ std::string composition(bool short_way, const std::string& backoff) {
                                {"plan", "[r1/planner, r1/follower]" + restart},
                                {"control", "[r1/control]" + restart},
                                {"safety", "[r1/guard]" + restart},
-                               {"observe", "[report, mission]" + restart}});
+                               {"observe", "[report, mission]" + restart}},
+                              {kDriveRecorder});
   const auto replace = [&](const std::string& from, const std::string& to) {
     const auto at = text.find(from);
     if (at == std::string::npos) throw std::runtime_error("lab.yaml no longer has '" + from + "'");
     text.replace(at, from.size(), to);
   };
-  replace("  report:\n",
-          "  recorder: {type: test/drive_recorder, remap: {raw: r1/guard/cmd_vel_raw, command: r1/guard/cmd_vel, "
-          "truth: world/r1/truth}}\n  report:\n");
   replace("timeout: 90s", "timeout: 900s");
   if (short_way) replace("[[16.0 m, 7.8 m]]", "[[4.0 m, 3.0 m]]");
   return text;

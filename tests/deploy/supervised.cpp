@@ -123,11 +123,15 @@ std::string Supervised::file(const std::string& name) const {
   return {};
 }
 
-std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers) {
+std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers,
+                     const std::vector<std::string>& more) {
   const std::string lab = text_of(fs::path(KERVAN_SOURCES) / "deploy/compositions/lab.yaml");
   // Everything but the head, which Supervised writes, with the arguments as they are.
-  const auto arguments = lab.find("\nargs:"), clock = lab.find("\nclock:"), templates = lab.find("\ntemplates:");
-  std::string text = lab.substr(arguments + 1, clock - arguments) + lab.substr(templates + 1) + "containers:\n";
+  const auto arguments = lab.find("\nargs:"), clock = lab.find("\nclock:"), templates = lab.find("\ntemplates:"),
+             mission = lab.find("\nmission:");
+  std::string text = lab.substr(arguments + 1, clock - arguments) + lab.substr(templates + 1, mission - templates);
+  for (const std::string& component : more) text += "  " + component + "\n";
+  text += lab.substr(mission + 1) + "containers:\n";
   for (const auto& [name, components] : containers) text += "  " + name + ": {components: " + components + "}\n";
   return text;
 }

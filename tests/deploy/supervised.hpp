@@ -63,7 +63,9 @@ class Supervised {
   Result result_;
 };
 
-/// The laboratory over these containers: {"sim", "[world]"} and so on.
-std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers);
+/// The laboratory over these containers: {"sim", "[world]"} and so on. `more` are components beside its own, one line
+/// each.
+std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers,
+                     const std::vector<std::string>& more = {});
 
 }  // namespace kervan::test
