@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
+#include <map>
 #include <sstream>
 
 #include "tests/program/program.hpp"
@@ -46,6 +48,24 @@ DriveRecording read_drive(const std::string& csv) {
     samples.push_back({std::stod(time) * 1e-9, std::stod(value)});
   }
   return recording;
+}
+
+std::string excerpt(const DriveRecording& recording, double from, double to) {
+  std::multimap<double, std::string> lines;
+  const auto add = [&](const char* what, const std::vector<SpeedAt>& samples) {
+    for (const SpeedAt& sample : samples) {
+      if (sample.time < from || sample.time > to) continue;
+      std::ostringstream line;
+      line << std::fixed << std::setprecision(3) << sample.time << " s " << what << ' ' << sample.value << " m/s\n";
+      lines.emplace(sample.time, line.str());
+    }
+  };
+  add("wanted", recording.raw);
+  add("told", recording.command);
+  add("done", recording.speed);
+  std::string text;
+  for (const auto& [time, line] : lines) text += line;
+  return text;
 }
 
 std::vector<Silence> silences(const std::vector<SpeedAt>& commands, const std::vector<SpeedAt>& speed) {

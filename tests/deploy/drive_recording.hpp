@@ -26,6 +26,9 @@ struct DriveRecording {
 /// Reads drive.csv.
 DriveRecording read_drive(const std::string& csv);
 
+/// What was wanted, told and done from one time to another, in the order of time, for whoever reads a failure.
+std::string excerpt(const DriveRecording& recording, double from, double to);
+
 constexpr double kFullBraking = 0.6;  ///< m/s2, of robots/p3dx.yaml
 constexpr double kLongest = 0.250;    ///< s, from the last fresh command to the beginning of full braking
 

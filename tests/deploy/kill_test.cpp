@@ -119,7 +119,8 @@ std::deque<Round> judge(const std::vector<Strike>& strikes, const DriveRecording
       if (!silence.braking) continue;
       (stream == &wanted ? figures.wanted : figures.told).push_back(*silence.braking);
       EXPECT_LE(*silence.braking, kLongest + 1e-6)
-          << "the last fresh " << (stream == &wanted ? "wanted" : "told") << " speed came at " << silence.last << " s";
+          << "the last fresh " << (stream == &wanted ? "wanted" : "told") << " speed came at " << silence.last << " s\n"
+          << excerpt(recording, silence.last - 0.2, silence.last + 2.0 * kLongest);
     }
   }
   std::deque<Round> again;
