@@ -12,8 +12,9 @@ class Pace {
   using Steady = std::chrono::steady_clock;
 
   /// What is made up after a delay, in simulated time. A longer one is lost: time that rushed would make commands old
-  /// before whoever sends them had a chance to send another.
-  static constexpr Duration most_made_up = std::chrono::milliseconds(50);
+  /// before whoever sends them had a chance to send another. Of the 50 ms that a drive guard leaves for the way to the
+  /// drive, this must be a small part.
+  static constexpr Duration most_made_up = std::chrono::milliseconds(20);
 
   /// `factor` is simulated over real time; 0: everything is due at once.
   Pace(double factor, Time start, Steady::time_point now) : factor_(factor), time_(start), steady_(now) {}

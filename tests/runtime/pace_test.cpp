@@ -26,8 +26,8 @@ TEST_F(PaceTest, WithoutAFactorEverythingIsDueAtOnce) {
 
 TEST_F(PaceTest, AShortDelayIsMadeUp) {
   Pace pace(1.0, at(0s), start_);
-  EXPECT_EQ(pace.due(at(100ms), start_ + 150ms), start_ + 100ms);
-  EXPECT_EQ(pace.due(at(200ms), start_ + 150ms), start_ + 200ms);
+  EXPECT_EQ(pace.due(at(100ms), start_ + 115ms), start_ + 100ms);
+  EXPECT_EQ(pace.due(at(200ms), start_ + 115ms), start_ + 200ms);
 }
 
 TEST_F(PaceTest, ALongDelayIsLost) {
@@ -39,7 +39,7 @@ TEST_F(PaceTest, ALongDelayIsLost) {
 TEST_F(PaceTest, WhatCountsAsLongIsSimulatedTime) {
   Pace pace(4.0, at(0s), start_);
   EXPECT_EQ(pace.due(at(0s), start_ + Pace::most_made_up / 4), start_);
-  EXPECT_EQ(pace.due(at(0s), start_ + 13ms), start_ + 13ms);
+  EXPECT_EQ(pace.due(at(0s), start_ + 6ms), start_ + 6ms);
 }
 
 }  // namespace
