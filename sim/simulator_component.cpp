@@ -7,6 +7,7 @@
 #include <memory>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -88,7 +89,7 @@ struct SimulatorParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(map, "map", {.help = "World file (worlds/lab.yaml).", .required = true});
+    v(map, "map", {.help = "World file (worlds/lab.yaml), or a map of ROS (.yaml) or ARIA (.map).", .required = true});
     v(seed, "seed", {.min = 0, .max = 4294967295.0, .help = "Seed of everything random."});
     v(step, "step", {.min = 0.001, .max = 0.1, .help = "Time step of motion and contact."});
     v(map_to_odom, "map_to_odom",
@@ -116,13 +117,17 @@ geometry_msgs::msg::TransformStamped transform(Time stamp, const std::string& pa
 kervan_msgs::msg::Outline drawing(const World& world, Time stamp) {
   kervan_msgs::msg::Outline outline;
   geometry::set_header(outline.header, stamp, "map");
-  for (const Segment& s : world.segments()) {
-    auto& drawn = outline.segments.emplace_back();
-    drawn.x1 = s.a.x();
-    drawn.y1 = s.a.y();
-    drawn.x2 = s.b.x();
-    drawn.y2 = s.b.y();
-  }
+  const auto draw = [&outline](std::span<const Segment> segments) {
+    for (const Segment& s : segments) {
+      auto& drawn = outline.segments.emplace_back();
+      drawn.x1 = s.a.x();
+      drawn.y1 = s.a.y();
+      drawn.x2 = s.b.x();
+      drawn.y2 = s.b.y();
+    }
+  };
+  draw(world.segments());
+  for (const CellMap& map : world.bitmaps()) draw(map.edges().segments());
   for (const Circle& c : world.circles()) {
     auto& drawn = outline.circles.emplace_back();
     drawn.x = c.center.x();

@@ -1,6 +1,7 @@
 #include "sim/sonar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 #include <stdexcept>
@@ -42,16 +43,25 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
 
 double Sonars::echo(const World& world, Robots robots, const Vector2& origin, std::span<const Vector2> directions,
                     double c, double s) const {
+  constexpr std::size_t most = 64;  // rays at a time, on the stack
+  std::array<Vector2, most> turned;
+  std::array<RayHit, most> hits;
   double nearest = infinity;
-  for (const Vector2& d : directions) {
-    const Vector2 direction(c * d.x() - s * d.y(), s * d.x() + c * d.y());
-    const double range = std::min(nearest, ring_.max_range);
-    auto hit = world.cast({origin, direction}, range);
-    const auto on_robot = cast(robots, {origin, direction}, range);
-    if (on_robot && (!hit || on_robot->distance < hit->distance)) hit = on_robot;
-    if (!hit || hit->distance >= nearest) continue;
-    if (settings_.incidence_limit && -direction.dot(hit->normal) < min_cosine_) continue;
-    nearest = hit->distance;
+  for (std::size_t first = 0; first < directions.size(); first += most) {
+    const std::size_t count = std::min(most, directions.size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector2& d = directions[first + i];
+      turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
+    }
+    world.cast(origin, {turned.data(), count}, ring_.max_range, {hits.data(), count});
+    for (std::size_t i = 0; i < count; ++i) {
+      RayHit hit = hits[i];
+      const auto on_robot = cast(robots, {origin, turned[i]}, std::min(nearest, ring_.max_range));
+      if (on_robot && on_robot->distance < hit.distance) hit = *on_robot;
+      if (hit.distance >= nearest) continue;
+      if (settings_.incidence_limit && -turned[i].dot(hit.normal) < min_cosine_) continue;
+      nearest = hit.distance;
+    }
   }
   return nearest;
 }

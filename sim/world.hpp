@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/bitmap.hpp"
+#include "sim/cell_map.hpp"
 #include "sim/outline.hpp"
-#include "sim/shape_grid.hpp"
-#include "sim/shapes.hpp"
+#include "sim/shape_map.hpp"
 
 namespace kervan::sim {
 
@@ -18,28 +19,21 @@ struct Obstacles {
   std::vector<Segment> segments = {};
   std::vector<Circle> circles = {};
   std::vector<Box> boxes = {};
-};
-
-/// Where a ray meets an obstacle.
-struct RayHit {
-  double distance;  ///< m from the ray's origin
-  Vector2 normal;   ///< of the surface, length 1, on the ray's side
-};
-
-/// The point of all obstacles that is nearest to a given one.
-struct NearestObstacle {
-  double distance;  ///< m; 0 inside a solid
-  Vector2 point;    ///< on the surface, or the given point itself inside a solid
+  std::vector<Bitmap> bitmaps = {};
 };
 
 class World {
  public:
-  /// Throws std::invalid_argument if a number is not finite, a segment or a box has no extent, or a radius is not
-  /// positive. A world without obstacles is allowed.
+  /// Throws std::invalid_argument if a number is not finite, a segment or a box has no extent, a radius is not
+  /// positive, or a bitmap does not have as many cells as it says. A world without obstacles is allowed.
   explicit World(Obstacles obstacles, std::string name = {});
 
-  /// The first obstacle along the ray, no farther than `range`; nothing if there is none. Exact.
+  /// The first obstacle along the ray, no farther than `range`; nothing if there is none. Exact among shapes; as exact
+  /// as CellMap says among the cells of bitmaps.
   std::optional<RayHit> cast(const Ray& ray, double range = infinity) const;
+
+  /// The same for many rays from one point, whose directions have length 1: hits[i] is where ray i ends.
+  void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
 
   /// The nearest obstacle to a point, no farther than `range`; nothing if there is none. Exact.
   std::optional<NearestObstacle> nearest(const Vector2& point, double range = infinity) const;
@@ -51,18 +45,21 @@ class World {
   const std::string& name() const { return name_; }
 
   /// What the world was made of, in the same order.
-  std::span<const Segment> segments() const { return {segments_.data(), segments_.size() - 4 * boxes_.size()}; }
-  std::span<const Circle> circles() const { return circles_; }
+  std::span<const Segment> segments() const {
+    return shapes_.segments().first(shapes_.segments().size() - 4 * boxes_.size());
+  }
+  std::span<const Circle> circles() const { return shapes_.circles(); }
   std::span<const Box> boxes() const { return boxes_; }
+  std::span<const CellMap> bitmaps() const { return bitmaps_; }
 
  private:
   World(std::string name, Obstacles valid_obstacles);
+  bool solid_at(const Vector2& point) const;
 
   std::string name_;
-  std::vector<Segment> segments_;  // with the four edges of each box at the end
-  std::vector<Circle> circles_;
+  ShapeMap shapes_;  // with the four edges of each box behind the segments
   std::vector<Box> boxes_;
-  ShapeGrid grid_;
+  std::vector<CellMap> bitmaps_;
 };
 
 }  // namespace kervan::sim

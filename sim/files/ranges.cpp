@@ -7,14 +7,12 @@
 
 namespace kervan::sim {
 
-namespace {
 std::string text_of(double number) {
   std::array<char, 32> buffer{};
   const auto [end, error] =
       std::to_chars(buffer.data(), buffer.data() + buffer.size(), number, std::chars_format::general, 8);
   return {buffer.data(), end};
 }
-}  // namespace
 
 double positive(const config::Node& node, std::string_view unit, double highest) {
   const double value = node.as_quantity(unit);

@@ -1,6 +1,7 @@
 /// Quantities of world and robot files that must lie in a range.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "framework/config/node.hpp"
@@ -10,6 +11,9 @@ namespace kervan::sim {
 
 /// Metres from the origin of map. Far more than any building, and near enough for exact micrometres.
 inline constexpr double farthest = 1e6;
+
+/// A number as messages show it: `1000000`, `0.65`.
+std::string text_of(double number);
 
 /// The quantity in SI units, or ConfigError at the node if it is not positive or above `highest`.
 double positive(const config::Node& node, std::string_view unit, double highest);

@@ -1,13 +1,24 @@
 #include "sim/files/world_file.hpp"
 
+#include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include "framework/config/node.hpp"
+#include "sim/files/aria_map.hpp"
+#include "sim/files/image.hpp"
 #include "sim/files/ranges.hpp"
+#include "sim/files/ros_map.hpp"
 
 namespace kervan::sim {
 
 namespace {
+
+std::string folder_of(const std::string& path) { return std::filesystem::path(path).parent_path().string(); }
+
+std::string path_from(const std::string& folder, const std::string& path) {
+  return (std::filesystem::path(folder) / path).string();
+}
 
 Segment segment(const config::Node& node) {
   const auto& ends = node.list_of(2, "the two ends of a segment [[x m, y m], [x m, y m]]");
@@ -21,13 +32,18 @@ Circle circle(const config::Node& node) {
   return {point_within(node.required("center"), farthest), positive(node.required("radius"), "m", farthest)};
 }
 
-Box box(const config::Node& node) {
-  node.only_keys({"center", "size", "yaw"});
+/// The keys center, size and yaw of a box or bitmap.
+Box rectangle(const config::Node& node) {
   const Vector2 center = point_within(node.required("center"), farthest);
-  const auto& size = node.required("size").list_of(2, "the extents of a box [along x m, along y m]");
+  const auto& size = node.required("size").list_of(2, "two extents [along x m, along y m]");
   const config::Node* yaw = node.optional("yaw");
   return {{center.x(), center.y(), yaw ? yaw->as_quantity("rad") : 0.0},
           {positive(size[0], "m", farthest), positive(size[1], "m", farthest)}};
+}
+
+Box box(const config::Node& node) {
+  node.only_keys({"center", "size", "yaw"});
+  return rectangle(node);
 }
 
 template <class Shape>
@@ -38,17 +54,73 @@ std::vector<Shape> shapes(const config::Node& file, std::string_view key, Shape 
   return result;
 }
 
-World world(const config::Node& file) {
-  file.only_keys({"kervan_world", "name", "segments", "circles", "boxes"});
+/// A picture laid over a rectangle: its dark half of shades is solid.
+Bitmap bitmap(const config::Node& node, const std::string& folder) {
+  node.only_keys({"image", "center", "size", "yaw"});
+  const Box place = rectangle(node);
+  const config::Node& picture = node.required("image");
+  const std::string path = path_from(folder, picture.as_text());
+  try {
+    const Image image = load_image(path);
+    Bitmap map;
+    map.cell = place.size.cwiseQuotient(Vector2(image.columns, image.rows));
+    const Vector2 corner = place.pose * Vector2(-0.5 * place.size);
+    map.origin = {corner.x(), corner.y(), place.pose.yaw};
+    map.columns = image.columns;
+    map.rows = image.rows;
+    map.solid = solid_pixels(image, [](Pixel pixel) { return pixel.opacity == 255 && pixel.shade < 128; });
+    return map;
+  } catch (const std::invalid_argument& error) {
+    picture.fail(path + ": " + error.what());
+  }
+}
+
+bool is_aria_map(const std::string& path) { return path.ends_with(".map"); }
+
+/// Adds a map of another program.
+void add_map(const config::Node& node, const std::string& folder, Obstacles& obstacles) {
+  const std::string path = path_from(folder, node.as_text());
+  std::string text;
+  try {
+    text = read_file(path);
+  } catch (const std::invalid_argument& error) {
+    node.fail(path + ": " + error.what());
+  }
+  if (is_aria_map(path)) {
+    Obstacles map = parse_aria_map(text, path);
+    std::move(map.segments.begin(), map.segments.end(), std::back_inserter(obstacles.segments));
+    std::move(map.bitmaps.begin(), map.bitmaps.end(), std::back_inserter(obstacles.bitmaps));
+  } else {
+    obstacles.bitmaps.push_back(ros_map(config::parse(text, path), folder_of(path)));
+  }
+}
+
+World world(const config::Node& file, const std::string& folder) {
+  file.only_keys({"kervan_world", "name", "segments", "circles", "boxes", "bitmaps", "maps"});
   require_version_1(file, "kervan_world");
   const std::string name = file.required("name").as_text();
-  return World({shapes(file, "segments", segment), shapes(file, "circles", circle), shapes(file, "boxes", box)}, name);
+  Obstacles obstacles{shapes(file, "segments", segment), shapes(file, "circles", circle), shapes(file, "boxes", box)};
+  if (const config::Node* list = file.optional("bitmaps"))
+    for (const config::Node& item : list->list()) obstacles.bitmaps.push_back(bitmap(item, folder));
+  if (const config::Node* list = file.optional("maps"))
+    for (const config::Node& item : list->list()) add_map(item, folder, obstacles);
+  return World(std::move(obstacles), name);
 }
 
 }  // namespace
 
-World load_world(const std::string& path) { return world(config::load(path)); }
+World load_world(const std::string& path) {
+  const std::string stem = std::filesystem::path(path).stem().string();
+  if (is_aria_map(path)) return World(load_aria_map(path), stem);
+  const config::Node file = config::load(path);
+  // Whoever has a map of ROS should not have to write a world around it.
+  if (file.is_map() && file.optional("image") != nullptr && file.optional("kervan_world") == nullptr)
+    return World({.bitmaps = {ros_map(file, folder_of(path))}}, stem);
+  return world(file, folder_of(path));
+}
 
-World parse_world(const std::string& text, const std::string& shown_as) { return world(config::parse(text, shown_as)); }
+World parse_world(const std::string& text, const std::string& shown_as) {
+  return world(config::parse(text, shown_as), folder_of(shown_as));
+}
 
 }  // namespace kervan::sim

@@ -7,10 +7,12 @@
 
 namespace kervan::sim {
 
-/// Reads a world. Throws ConfigError at the place in the file that cannot be used.
+/// Reads a world, or a map of ROS (YAML) or ARIA (.map) as one. Throws ConfigError at the place in the file that cannot
+/// be used.
 World load_world(const std::string& path);
 
-/// The same from a text in memory; `shown_as` stands where messages name the file.
+/// A world from a text in memory; `shown_as` stands where messages name the file, and other files that the world names
+/// lie in its folder.
 World parse_world(const std::string& text, const std::string& shown_as);
 
 }  // namespace kervan::sim

@@ -51,6 +51,8 @@ const std::vector<Arrow> arrows = {
 
     {"sim/simulator_component\\.cpp",
      {"sim/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
+    // Compiled for other processors: whatever inline functions they saw, the whole program might get.
+    {"sim/ray_kernel_avx.*\\.cpp", {"sim/ray_kernel.hpp"}},
     // Worlds and robot models are configuration files; the simulator itself takes them as plain values.
     {"sim/files/.*", {"sim/", "framework/config/", "framework/component/error.hpp", "framework/geometry/"}},
     {"sim/.*", {"sim/", "framework/geometry/"}, {"sim/files/", "framework/geometry/messages.hpp"}},
@@ -81,6 +83,8 @@ const std::vector<Fence> fences = {
     // Whoever logs: what runs components, and components in their handlers.
     {"spdlog/", {"framework/runtime/.*", ".*_component\\.cpp", "tests/.*"}},
     {"CLI/", {"deploy/cli/main\\.cpp"}},
+    {"png.h", {"sim/files/image\\.cpp"}},
+    {"immintrin.h", {"sim/ray_kernel_avx.*\\.cpp"}},
     {"nlohmann/", {"deploy/.*", "tests/.*"}},
     {"gtest/", {"tests/.*"}},
     {"gmock/", {"tests/.*"}},

@@ -47,10 +47,10 @@ std::string world_refusal(const std::string& lines) {
 
 TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
   EXPECT_EQ(world_refusal("walls: []\n"),
-            "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes");
+            "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes, bitmaps, maps");
   EXPECT_EQ(world_refusal("circle: []\n"),
             "w.yaml:3:1: unknown key 'circle'; did you mean 'circles'? allowed: kervan_world, name, segments, circles, "
-            "boxes");
+            "boxes, bitmaps, maps");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m]}\n"),
             "w.yaml:4:5: circles[0]: the key 'radius' is missing");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: -0.3 m}\n"),

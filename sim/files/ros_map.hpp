@@ -1,0 +1,15 @@
+/// Maps of ROS: a YAML file of map_server with a picture beside it.
+#pragma once
+
+#include "framework/config/node.hpp"
+#include "sim/bitmap.hpp"
+
+namespace kervan::sim {
+
+/// Reads a map by the rules of map_server: image, resolution, origin (with yaw), negate, occupied_thresh, free_thresh
+/// and mode (trinary, scale or raw). Cells that are occupied beyond occupied_thresh are solid, all others are free,
+/// unknown and transparent ones too. `folder` is where the file lies; the picture's path counts from there. Throws
+/// ConfigError at the place in the file that cannot be used.
+Bitmap ros_map(const config::Node& file, const std::string& folder);
+
+}  // namespace kervan::sim
