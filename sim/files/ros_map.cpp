@@ -70,4 +70,8 @@ Bitmap ros_map(const config::Node& file, const std::string& folder) {
   return map;
 }
 
+Bitmap load_ros_map(const std::string& path) {
+  return ros_map(config::load(path), std::filesystem::path(path).parent_path().string());
+}
+
 }  // namespace kervan::sim
