@@ -9,7 +9,8 @@ namespace {
 
 RobotSetup valid(RobotSetup setup) {
   require_valid(setup.model);
-  if (setup.sonar_period <= Duration::zero() || setup.odometry_period <= Duration::zero())
+  if (setup.sonar_period <= Duration::zero() || setup.laser_period <= Duration::zero() ||
+      setup.odometry_period <= Duration::zero())
     throw std::invalid_argument("robot " + setup.name + ": the periods of its sensors must be positive");
   if (setup.command_timeout <= Duration::zero())
     throw std::invalid_argument("robot " + setup.name + ": the time-out of its drive must be positive");
@@ -41,6 +42,7 @@ Robot::Robot(RobotSetup setup, std::uint64_t seed, const Surroundings& around)
       odometry_(setup_.start, setup_.odometry_error, random_),
       sonars_(setup_.model.sonars, setup_.sonar) {
   sonar_scan_.ranges.resize(sonars_.size());
+  if (setup_.model.laser) laser_sweep_.ranges.resize(laser_.emplace(*setup_.model.laser, setup_.laser).size());
 }
 
 void Robot::drive(const Surroundings& around, Duration now, Duration dt) {
@@ -54,10 +56,12 @@ void Robot::measure(const Surroundings& around, Duration before, Duration now) {
   body_.look(around);
   if (due(setup_.odometry_period, before, now)) measure_odometry(now);
   if (due(setup_.sonar_period, before, now)) measure_sonar(around, now);
+  if (laser_ && due(setup_.laser_period, before, now)) measure_laser(around, now);
 }
 
 void Robot::measure_first(const Surroundings& around) {
   measure_sonar(around, Duration::zero());
+  if (laser_) measure_laser(around, Duration::zero());
   measure_odometry(Duration::zero());
 }
 
@@ -65,6 +69,12 @@ void Robot::measure_sonar(const Surroundings& around, Duration now) {
   sonar_scan_.stamp = now;
   const auto scan = static_cast<std::uint64_t>(now / setup_.sonar_period);
   sonars_.measure(around, body_.pose(), random_, scan, sonar_scan_.ranges);
+}
+
+void Robot::measure_laser(const Surroundings& around, Duration now) {
+  laser_sweep_.stamp = now;
+  const auto sweep = static_cast<std::uint64_t>(now / setup_.laser_period);
+  laser_->measure(around, body_.pose(), random_, sweep, laser_sweep_.ranges);
 }
 
 void Robot::measure_odometry(Duration now) {

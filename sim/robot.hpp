@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/contact.hpp"
 #include "sim/drive.hpp"
+#include "sim/laser.hpp"
 #include "sim/odometry.hpp"
 #include "sim/random.hpp"
 #include "sim/robot_model.hpp"
@@ -21,14 +23,22 @@ struct RobotSetup {
   RobotModel model;
   Pose2 start;  ///< of base_link in map
   SonarSettings sonar = {};
+  LaserSettings laser = {};
   double odometry_error = 0.0;  ///< bound of the scale errors, per metre and per radian
   Duration sonar_period = std::chrono::milliseconds(100);
+  Duration laser_period = std::chrono::milliseconds(100);
   Duration odometry_period = std::chrono::milliseconds(50);
   Duration command_timeout = std::chrono::milliseconds(250);  ///< see DifferentialDrive
 };
 
 /// One round of all sonars; see Sonars::measure for the ranges.
 struct SonarScan {
+  Duration stamp{0};
+  std::vector<double> ranges;
+};
+
+/// One sweep of the laser; see Laser::measure for the ranges.
+struct LaserSweep {
   Duration stamp{0};
   std::vector<double> ranges;
 };
@@ -71,10 +81,12 @@ class Robot {
 
   /// The latest measurements.
   const SonarScan& sonar() const { return sonar_scan_; }
+  const LaserSweep& laser() const { return laser_sweep_; }  ///< without ranges if the robot has no laser
   const OdometryReading& odometry() const { return odometry_reading_; }
 
  private:
   void measure_sonar(const Surroundings& around, Duration now);
+  void measure_laser(const Surroundings& around, Duration now);
   void measure_odometry(Duration now);
 
   RobotSetup setup_;
@@ -84,6 +96,8 @@ class Robot {
   Odometry odometry_;
   Sonars sonars_;
   SonarScan sonar_scan_;
+  std::optional<Laser> laser_;
+  LaserSweep laser_sweep_;
   OdometryReading odometry_reading_;
 };
 

@@ -14,6 +14,13 @@ void require_valid(const RobotModel& model) {
   for (const double limit :
        {drive.speed, drive.turn_rate, drive.acceleration, drive.deceleration, drive.angular_acceleration})
     require(limit > 0.0 && std::isfinite(limit), "every limit of the drive must be a positive number");
+  if (const auto& laser = model.laser) {
+    require(laser->beams >= 2, "the laser needs at least 2 beams");
+    require(laser->field_of_view > 0.0 && laser->field_of_view < 2.0 * std::numbers::pi,
+            "the laser's field of view must be in (0, 2 pi)");
+    require(laser->min_range >= 0.0 && laser->min_range < laser->max_range && std::isfinite(laser->max_range),
+            "the laser needs 0 <= min_range < max_range");
+  }
   const SonarRing& sonars = model.sonars;
   if (sonars.poses.empty()) return;
   require(sonars.min_range >= 0.0 && sonars.min_range < sonars.max_range && std::isfinite(sonars.max_range),

@@ -2,6 +2,7 @@
 /// SI units and radians, in the robot's frame base_link: the point between the driven wheels, x forward, y left.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,25 @@ struct SonarRing {
   std::vector<Pose2> poses;    ///< of the transducers, looking along their x axis, in the order of their numbers
 };
 
+/// A planar laser range finder. Its beams are spread evenly over the field of view: the first and the last stand at its
+/// edges, and beam i is the next one to the left of beam i - 1.
+struct LaserMount {
+  Pose2 pose;                  ///< of the device, which looks along its x axis
+  int beams = 0;               ///< at least 2
+  double field_of_view = 0.0;  ///< rad, between the first and the last beam; less than a full turn
+  double min_range = 0.0;      ///< m; nearer echoes are not measured
+  double max_range = 0.0;      ///< m; farther ones neither
+};
+
+/// rad between neighbouring beams.
+inline double beam_spacing(const LaserMount& laser) { return laser.field_of_view / (laser.beams - 1); }
+
 struct RobotModel {
   std::string name;
   Outline outline;
   DriveLimits drive;
-  SonarRing sonars;
+  SonarRing sonars = {};
+  std::optional<LaserMount> laser = std::nullopt;
 };
 
 /// Throws std::invalid_argument with one sentence that says which value cannot be.

@@ -21,6 +21,7 @@
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
 #include "rosgraph_msgs/msg/Clock.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 #include "sensor_msgs/msg/Range.hpp"
 #include "sim/files/robot_file.hpp"
 #include "sim/files/world_file.hpp"
@@ -45,6 +46,9 @@ struct RobotParams {
   double sonar_noise = 0.01;
   double sonar_drop_out = 0.0;
   double sonar_incidence_limit = any_angle;
+  Duration laser_period = 100ms;
+  double laser_noise = 0.005;
+  double laser_drop_out = 0.0;
 
   template <class Visitor>
   void describe(Visitor& v) {
@@ -66,6 +70,11 @@ struct RobotParams {
        .min = 0.0,
        .max = any_angle,
        .help = "Surfaces met more obliquely give no echo; 90 deg: all do."});
+    v(laser_period, "laser_period", {.min = 0.001, .max = 10.0, .help = "Time between two sweeps of the laser."});
+    v(laser_noise, "laser_noise",
+      {.unit = "m", .min = 0.0, .max = 1.0, .help = "Bound of the uniform error of each range of the laser."});
+    v(laser_drop_out, "laser_drop_out",
+      {.min = 0.0, .max = 1.0, .help = "Probability that a beam of the laser brings nothing back."});
   }
 
   RobotSetup setup(const std::string& name) const {
@@ -75,6 +84,8 @@ struct RobotParams {
     setup.sonar_period = sonar_period;
     setup.command_timeout = command_timeout;
     setup.sonar = {.rays = static_cast<int>(sonar_rays), .noise = sonar_noise, .drop_out = sonar_drop_out};
+    setup.laser_period = laser_period;
+    setup.laser = {.noise = laser_noise, .drop_out = laser_drop_out};
     if (sonar_incidence_limit < any_angle) setup.sonar.incidence_limit = sonar_incidence_limit;
     return setup;
   }
@@ -148,9 +159,10 @@ kervan_msgs::msg::Outline drawing(const World& world, Time stamp) {
 /// The ports of one robot. Its frames are <name>/odom and <name>/base_link.
 class RobotPorts {
  public:
-  RobotPorts(Component* owner, const std::string& name)
+  RobotPorts(Component* owner, const std::string& name, bool has_laser)
       : odom_frame_(name + "/odom"),
         base_frame_(name + "/base_link"),
+        laser_frame_(name + "/laser"),
         cmd_vel_(owner, name + "/cmd_vel", qos::command.optional(),
                  "Speed wanted of " + name + "; it brakes command_timeout after the last one."),
         sonar_(owner, name + "/sonar", qos::sensor, "What the sonars of " + name + " measure; +inf without an echo."),
@@ -158,7 +170,11 @@ class RobotPorts {
         truth_(owner, name + "/truth", qos::state, "True pose in map and true speed of " + name + ", every step."),
         contact_(owner, name + "/contact", qos::event, "Each time " + name + " begins to touch something."),
         clearance_(owner, name + "/clearance", qos::latched,
-                   "Least distance of the hull of " + name + " to any obstacle or robot so far.") {}
+                   "Least distance of the hull of " + name + " to any obstacle or robot so far.") {
+    if (has_laser)
+      scan_.emplace(owner, name + "/scan", qos::sensor,
+                    "What the laser of " + name + ", if it has one, measures in the frame " + laser_frame_ + ".");
+  }
 
   /// Hands the drive what has been commanded since the last step.
   void steer(Simulation& simulation, std::size_t robot) {
@@ -178,8 +194,11 @@ class RobotPorts {
       publish_odometry(robot.odometry(), now);
       if (map_to_odom) frames.transforms.push_back(transform(now, "map", odom_frame_, Pose2{}));
       frames.transforms.push_back(transform(now, odom_frame_, base_frame_, robot.odometry().pose));
+      if (const auto& laser = robot.setup().model.laser)
+        frames.transforms.push_back(transform(now, base_frame_, laser_frame_, laser->pose));
     }
     if (robot.sonar().stamp == simulated && !robot.sonar().ranges.empty()) publish_sonar(robot, now);
+    if (scan_ && robot.laser().stamp == simulated) publish_scan(robot, now);
   }
 
   std::uint64_t contacts() const { return contacts_; }  ///< published so far
@@ -221,6 +240,20 @@ class RobotPorts {
     sonar_.publish(std::move(message));
   }
 
+  void publish_scan(const Robot& robot, Time now) {
+    const LaserMount& laser = *robot.setup().model.laser;
+    auto message = scan_->loan();
+    geometry::set_header(message->header, now, laser_frame_);
+    message->angle_min = static_cast<float>(-0.5 * laser.field_of_view);
+    message->angle_max = static_cast<float>(0.5 * laser.field_of_view);
+    message->angle_increment = static_cast<float>(beam_spacing(laser));
+    message->scan_time = static_cast<float>(seconds(robot.setup().laser_period));
+    message->range_min = static_cast<float>(laser.min_range);
+    message->range_max = static_cast<float>(laser.max_range);
+    message->ranges.assign(robot.laser().ranges.begin(), robot.laser().ranges.end());
+    scan_->publish(std::move(message));
+  }
+
   void publish_contacts(const Robot& robot, Time now) {
     const Body& body = robot.body();
     if (body.contacts() > contacts_) {
@@ -247,8 +280,10 @@ class RobotPorts {
 
   std::string odom_frame_;
   std::string base_frame_;
+  std::string laser_frame_;
   Input<geometry_msgs::msg::TwistStamped> cmd_vel_;
   Output<kervan_msgs::msg::SonarArray> sonar_;
+  std::optional<Output<sensor_msgs::msg::LaserScan>> scan_;
   Output<nav_msgs::msg::Odometry> odom_;
   Output<nav_msgs::msg::Odometry> truth_;
   Output<kervan_msgs::msg::Contact> contact_;
@@ -297,7 +332,10 @@ class SimulatorComponent final : public Component {
 
   std::deque<RobotPorts> ports() {
     std::deque<RobotPorts> ports;
-    for (const auto& [name, robot] : params_.robots) ports.emplace_back(this, name);
+    // Without a world there are no robots, only declarations: then the laser's is among them.
+    const std::vector<Robot>& simulated = simulation_.robots();
+    for (const auto& [name, robot] : params_.robots)
+      ports.emplace_back(this, name, simulated.empty() || simulated[ports.size()].setup().model.laser.has_value());
     return ports;
   }
 

@@ -12,6 +12,7 @@ namespace kervan::sim {
 namespace {
 
 constexpr double largest_robot = 10.0;  // m from the origin of base_link
+constexpr std::int64_t most_beams = 100'000;
 
 Outline outline(const config::Node& node) {
   std::vector<Vector2> corners;
@@ -43,13 +44,32 @@ SonarRing sonars(const config::Node& node) {
   return ring;
 }
 
+LaserMount laser(const config::Node& node) {
+  node.only_keys({"pose", "beams", "field_of_view", "min_range", "max_range"});
+  LaserMount mount;
+  mount.pose = node.required("pose").as_pose();
+  const config::Node& beams = node.required("beams");
+  const std::int64_t count = beams.as_integer();
+  if (count < 2 || count > most_beams)
+    beams.fail(std::to_string(count) + " is out of range; allowed: 2 .. " + std::to_string(most_beams));
+  mount.beams = static_cast<int>(count);
+  const config::Node& field = node.required("field_of_view");
+  mount.field_of_view = positive(field, "rad", 2.0 * std::numbers::pi);
+  if (!(mount.field_of_view < 2.0 * std::numbers::pi))
+    field.fail("the first and the last beam would be the same; a full turn of n beams has (n - 1) / n of it");
+  mount.max_range = positive(node.required("max_range"), "m", 1000.0);
+  mount.min_range = positive(node.required("min_range"), "m", mount.max_range);
+  return mount;
+}
+
 RobotModel robot_model(const config::Node& file) {
-  file.only_keys({"kervan_robot", "name", "outline", "drive", "sonars"});
+  file.only_keys({"kervan_robot", "name", "outline", "drive", "sonars", "laser"});
   require_version_1(file, "kervan_robot");
   return {.name = file.required("name").as_text(),
           .outline = outline(file.required("outline")),
           .drive = drive(file.required("drive")),
-          .sonars = file.optional("sonars") ? sonars(file.required("sonars")) : SonarRing{}};
+          .sonars = file.optional("sonars") ? sonars(file.required("sonars")) : SonarRing{},
+          .laser = file.optional("laser") ? std::optional(laser(file.required("laser"))) : std::nullopt};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
 #include "rosgraph_msgs/msg/Clock.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 #include "sensor_msgs/msg/Range.hpp"
 #include "tf2_msgs/msg/TFMessage.hpp"
 
@@ -23,8 +24,8 @@ using kervan_msgs::msg::Contact;
 using kervan_msgs::msg::SonarArray;
 using nav_msgs::msg::Odometry;
 
-ValueMap parameters(ValueMap robot = {}) {
-  robot.emplace("model", KERVAN_SIM_FOLDER "/robots/p3dx.yaml");
+ValueMap parameters(ValueMap robot = {}, const std::string& model = "p3dx") {
+  robot.emplace("model", KERVAN_SIM_FOLDER "/robots/" + model + ".yaml");
   return {{"map", KERVAN_SIM_FOLDER "/worlds/lab.yaml"}, {"robots", ValueMap{{"r1", robot}}}};
 }
 
@@ -76,6 +77,27 @@ TEST(SimulatorComponent, PublishesEverythingAtItsOwnRate) {
   EXPECT_EQ(frames.back()->transforms[0].header.frame_id, "map");
   EXPECT_EQ(frames.back()->transforms[1].header.frame_id, "r1/odom");
   EXPECT_EQ(frames.back()->transforms[1].child_frame_id, "r1/base_link");
+}
+
+TEST(SimulatorComponent, PublishesTheScansOfALaserInItsOwnFrame) {
+  ValueMap values = parameters({{"laser_noise", 0.0}, {"laser_period", 0.2}}, "p3at");
+  test::Harness harness("sim/world", values);
+  harness.advance(1s);
+  const auto scans = harness.take<sensor_msgs::msg::LaserScan>("r1/scan");
+  ASSERT_EQ(scans.size(), 6u);
+  const auto& scan = *scans.back();
+  EXPECT_EQ(scan.header.frame_id, "r1/laser");
+  EXPECT_EQ(scan.header.stamp.sec, 1);
+  ASSERT_EQ(scan.ranges.size(), 181u);
+  EXPECT_FLOAT_EQ(scan.angle_min + 180.0f * scan.angle_increment, scan.angle_max);
+  EXPECT_FLOAT_EQ(scan.scan_time, 0.2f);
+  EXPECT_NEAR(scan.ranges[0], 1.5, 1e-6) << "the wall to the right";
+  EXPECT_NEAR(scan.ranges[180], 17.5, 1e-6) << "the wall to the left";
+  const auto* frames = harness.latest<tf2_msgs::msg::TFMessage>("/tf");
+  ASSERT_EQ(frames->transforms.size(), 3u);
+  EXPECT_EQ(frames->transforms[2].header.frame_id, "r1/base_link");
+  EXPECT_EQ(frames->transforms[2].child_frame_id, "r1/laser");
+  EXPECT_EQ(frames->transforms[2].transform.translation.x, 0.125);
 }
 
 TEST(SimulatorComponent, DrivesAsCommandedAndBrakesWhenTheCommandsEnd) {

@@ -1,0 +1,53 @@
+#include "sim/laser.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+#include <cmath>
+#include <stdexcept>
+
+namespace kervan::sim {
+
+Laser::Laser(const LaserMount& mount, const LaserSettings& settings)
+    : mount_(mount), settings_(settings), reach_(mount.pose.position().norm() + mount.max_range) {
+  if (!(settings.noise >= 0.0)) throw std::invalid_argument("the noise of the laser must not be negative");
+  if (!(settings.drop_out >= 0.0 && settings.drop_out <= 1.0))
+    throw std::invalid_argument("the drop-out probability of the laser must be in [0, 1]");
+  for (int i = 0; i < mount.beams; ++i)
+    directions_.push_back(geometry::heading(mount.pose.yaw - 0.5 * mount.field_of_view + i * beam_spacing(mount)));
+}
+
+void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
+                    std::span<double> ranges) const {
+  assert(ranges.size() == size());
+  constexpr std::size_t most = 64;  // beams at a time, on the stack
+  std::array<Vector2, most> turned;
+  std::array<RayHit, most> hits;
+  const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
+  const Vector2 origin = pose * mount_.pose.position();
+  const std::vector<const PlacedBody*> robots = around.robots_within(pose.position(), reach_);
+  for (std::size_t first = 0; first < size(); first += most) {
+    const std::size_t count = std::min(most, size() - first);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector2& d = directions_[first + i];
+      turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
+    }
+    around.world().cast(origin, {turned.data(), count}, mount_.max_range, {hits.data(), count});
+    for (std::size_t i = 0; i < count; ++i) {
+      double range = hits[i].distance;
+      if (const auto on_robot = cast(robots, {origin, turned[i]}, std::min(range, mount_.max_range)))
+        range = on_robot->distance;
+      // Both numbers are drawn always, so that one imperfection does not change what the other does.
+      auto sequence = random.at(RandomUse::laser, static_cast<std::uint16_t>(first + i), scan);
+      const bool dropped = sequence.uniform() < settings_.drop_out;
+      range += sequence.uniform(-settings_.noise, settings_.noise);
+      if (dropped || !(range <= mount_.max_range))
+        range = infinity;
+      else if (range < mount_.min_range)
+        range = -infinity;
+      ranges[first + i] = range;
+    }
+  }
+}
+
+}  // namespace kervan::sim
