@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <numbers>
 #include <random>
@@ -203,8 +204,14 @@ void bench_segments(const std::string& name, const sim::World& world, bool smoke
 
 int main(int argc, char** argv) {
   const bool smoke = bench::begin(argc, argv, "Rays");
-  say("\n181-beam scans from random free places, one thread, its CPU time; medians of %d alternating rounds.\n",
-      smoke ? 1 : 7);
+  double load = 0.0;
+  getloadavg(&load, 1);
+  say("\n181-beam scans from random free places, one thread, its CPU time; medians of %d alternating rounds. The "
+      "tables are\n"
+      "four times as large as the textbook's raster, so the ratios shrink when others use the caches: at the start the "
+      "load\n"
+      "average was %.1f.\n",
+      smoke ? 1 : 7, load);
   bench_bitmap(bench::cave_name(), bench::cave(50.0), true, smoke);
   if (const auto willow = bench::test_data("ros/willow-full-0.05.yaml"))
     bench_bitmap("Willow Garage", sim::load_ros_map(*willow), false, smoke);

@@ -1,6 +1,8 @@
 // Maps that others made: every one loads, and what World says at random places is what brute force says.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -133,14 +135,20 @@ TEST(ExternalMaps, TheBitmapsOfStageAreAsTheyLook) {
   }
 }
 
-TEST(ExternalMaps, TheGridsOfMovingAiAreAsTheyLook) {
+/// Sets of many maps are checked in parts, which run side by side.
+class ManyExternalMaps : public testing::TestWithParam<int> {};
+constexpr int parts = 5;
+
+TEST_P(ManyExternalMaps, TheGridsOfMovingAiAreAsTheyLook) {
   SKIP_WITHOUT_TEST_DATA();
-  int seen = 0;
-  for (const auto& entry : fs::recursive_directory_iterator(data_folder() / "movingai/maps")) {
-    if (entry.path().extension() != ".map") continue;
-    SCOPED_TRACE(entry.path());
-    ++seen;
-    std::ifstream file(entry.path());
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(data_folder() / "movingai/maps"))
+    if (entry.path().extension() == ".map") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  ASSERT_EQ(files.size(), 9u);
+  for (auto i = static_cast<std::size_t>(GetParam()); i < files.size(); i += parts) {
+    SCOPED_TRACE(files[i]);
+    std::ifstream file(files[i]);
     std::string word, row;
     Bitmap map;
     map.cell = {1.0, 1.0};
@@ -154,10 +162,9 @@ TEST(ExternalMaps, TheGridsOfMovingAiAreAsTheyLook) {
     }
     expect_as_brute_force(World({.bitmaps = {map}}), 1000);
   }
-  EXPECT_EQ(seen, 9);
 }
 
-TEST(ExternalMaps, TheWorldsOfBarnAreAsTheyLook) {
+TEST_P(ManyExternalMaps, TheWorldsOfBarnAreAsTheyLook) {
   SKIP_WITHOUT_TEST_DATA();
   std::ifstream file(data_folder() / "barn/barn_cylinders.csv");
   std::string line;
@@ -171,10 +178,13 @@ TEST(ExternalMaps, TheWorldsOfBarnAreAsTheyLook) {
   }
   EXPECT_EQ(worlds.size(), 150u);
   for (const auto& [number, obstacles] : worlds) {
+    if (number / 2 % parts != GetParam()) continue;  // they have even numbers
     SCOPED_TRACE(number);
     expect_as_brute_force(World(obstacles), 1000);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Parts, ManyExternalMaps, testing::Range(0, parts));
 
 }  // namespace
 }  // namespace kervan::sim
