@@ -1,6 +1,7 @@
 /// Simulated time: one container runs it at a pace, the others follow it over loopback. Nothing here asserts how long
 /// anything takes.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <thread>
@@ -111,7 +112,7 @@ class SimClock : public testing::Test {
     ContainerSpec spec = alone(pace);
     spec.name = name;
     spec.members = {"sim", "robot"};
-    spec.domain = {.id = id, .tag = "kervan-sim-clock-test", .external_id = 212};
+    spec.domain = {.id = id, .tag = "kervan-sim-clock-test-" + std::to_string(getpid()), .external_id = 212};
     const kervan::QosProfile state = *kervan::builtin_profile("state");
     spec.components[0].container = "sim";
     spec.components[0].ports.push_back({.port = "/clock",
