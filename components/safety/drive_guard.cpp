@@ -44,10 +44,12 @@ geometry::Twist2 DriveGuard::step(Time now) {
   else if (state_ == DriveState::following)
     state_ = DriveState::braking;
   const geometry::Twist2 target = fresh ? wanted_ : geometry::Twist2{};
-  const double dt = seconds(params_.period);
-  output_.linear = approach(output_.linear, target.linear, params_.acceleration * dt, params_.deceleration * dt);
+  const double passed = seconds(stepped_ ? now - *stepped_ : params_.period);
+  const double up = std::min(passed, seconds(params_.period));
+  stepped_ = now;
+  output_.linear = approach(output_.linear, target.linear, params_.acceleration * up, params_.deceleration * passed);
   output_.angular =
-      approach(output_.angular, target.angular, params_.turn_acceleration * dt, params_.turn_acceleration * dt);
+      approach(output_.angular, target.angular, params_.turn_acceleration * up, params_.turn_acceleration * passed);
   return output_;
 }
 

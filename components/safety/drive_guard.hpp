@@ -46,7 +46,8 @@ class DriveGuard {
   /// What the drive shall do for one period, from `now` or, if the way to it is long, until `travel` later. Full
   /// braking begins so early that the drive spends no part of a period on a command that has turned too old: no later
   /// than timeout - travel after the last command, and less than a period before that. From then on the speed falls at
-  /// `deceleration`, the turning rate at `turn_acceleration`, both to zero.
+  /// `deceleration`, the turning rate at `turn_acceleration`, both to zero, by the time since the last call: one that
+  /// comes late makes up for what was missed. Speeding up never takes more than a period at once.
   geometry::Twist2 step(Time now);
 
   DriveState state() const { return state_; }
@@ -58,6 +59,7 @@ class DriveGuard {
 
   DriveGuardParams params_;
   std::optional<Time> received_;  // of the last good command, until it is forgotten
+  std::optional<Time> stepped_;
   geometry::Twist2 wanted_;
   geometry::Twist2 output_;
   DriveState state_ = DriveState::waiting;

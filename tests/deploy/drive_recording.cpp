@@ -14,24 +14,25 @@ namespace {
 
 constexpr double kStanding = 0.05;  ///< m/s
 
-std::optional<double> braking(const std::vector<SpeedAt>& speed, double last, double next) {
+Silence judged(const std::vector<SpeedAt>& speed, double last, double next) {
   const auto at = [&](double time) {
     return std::lower_bound(speed.begin(), speed.end(), time, [](const SpeedAt& s, double t) { return s.time < t; });
   };
   const auto latest = at(last + kLongest), end = at(next);
-  if (latest == speed.end() || std::abs(latest->value) < kStanding) return std::nullopt;
+  if (latest == speed.end() || std::abs(latest->value) < kStanding) return {last, next, std::nullopt};
   auto begin = end;
-  for (auto one = at(last); one != end && one + 1 != speed.end(); ++one) {
+  double pause = 0.0, lost = 0.0;
+  for (auto one = at(last); one != end && one + 1 != speed.end() && one->value != 0.0; ++one) {
     const double fall = std::abs(one->value) - std::abs((one + 1)->value), dt = (one + 1)->time - one->time;
     const bool full = fall >= 0.95 * kFullBraking * dt;
-    if (full && begin == end) begin = one;
-    if (!full && (one + 1)->time < last + kLongest) begin = end;  // it had only slowed down
+    if (full && begin == end) begin = one, lost = 0.0;
+    pause = full ? 0.0 : pause + dt;
+    if (!full) lost += dt;
+    // It had only slowed down, to a lower speed that was wanted.
+    if (pause > kPeriod && (one + 1)->time < last + kLongest) begin = end;
   }
-  if (begin == end) return std::numeric_limits<double>::infinity();
-  double after = begin->time - last;
-  for (auto one = begin; one != end && one->value != 0.0; ++one)
-    after = std::max(after, one->time - last - (std::abs(begin->value) - std::abs(one->value)) / kFullBraking);
-  return after;
+  if (begin == end) return {last, next, std::numeric_limits<double>::infinity()};
+  return {last, next, begin->time - last, lost};
 }
 
 }  // namespace
@@ -72,9 +73,17 @@ std::vector<Silence> silences(const std::vector<SpeedAt>& commands, const std::v
   std::vector<Silence> found;
   for (std::size_t i = 0; i + 1 < commands.size(); ++i) {
     const double last = commands[i].time, next = commands[i + 1].time;
-    if (next - last > kLongest + 1e-6) found.push_back({last, next, braking(speed, last, next)});
+    if (next - last > kLongest + 1e-6) found.push_back(judged(speed, last, next));
   }
   return found;
+}
+
+double longest_pause(const std::vector<SpeedAt>& commands, double from, double to) {
+  double longest = 0.0;
+  for (std::size_t i = 0; i + 1 < commands.size(); ++i)
+    if (commands[i + 1].time >= from && commands[i].time <= to)
+      longest = std::max(longest, commands[i + 1].time - commands[i].time);
+  return longest;
 }
 
 }  // namespace kervan::test

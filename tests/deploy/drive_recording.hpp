@@ -31,16 +31,21 @@ std::string excerpt(const DriveRecording& recording, double from, double to);
 
 constexpr double kFullBraking = 0.6;  ///< m/s2, of robots/p3dx.yaml
 constexpr double kLongest = 0.250;    ///< s, from the last fresh command to the beginning of full braking
+constexpr double kPeriod = 0.050;     ///< s, of the drive guard
 
 /// A time of more than kLongest without a command.
 struct Silence {
   double last, next;  ///< s, when the commands before and after it came
-  /// Seconds from `last` until full braking began; time in which it did not go on, before the robot stood or `next`
-  /// came, is added. Infinite if it never began, nothing if the robot stood anyway.
+  /// Seconds from `last` until full braking began. Infinite if it did not before `next`, nothing if the robot stood
+  /// anyway.
   std::optional<double> braking;
+  double lost = 0.0;  ///< s, in which it did not go on after that, before the robot stood or `next` came
 };
 
 /// All of them that ended.
 std::vector<Silence> silences(const std::vector<SpeedAt>& commands, const std::vector<SpeedAt>& speed);
+
+/// The longest time without a command that touches [from, to].
+double longest_pause(const std::vector<SpeedAt>& commands, double from, double to);
 
 }  // namespace kervan::test

@@ -121,6 +121,16 @@ TEST(DriveGuard, NeverDrivesAPeriodInWhichTheCommandTurnsTooOldOnItsWayToTheDriv
   }
 }
 
+TEST(DriveGuard, MakesUpForMissedPeriodsWhenItBrakesButNotWhenItSpeedsUp) {
+  DriveGuard guard = driving({0.5, 1.0}, at(10s));
+  guard.step(at(10200ms));
+  const Twist2 before = guard.output();
+  EXPECT_EQ(guard.step(at(10350ms)), (Twist2{before.linear - 0.6 * 0.15, before.angular - 1.74 * 0.15}));
+  const double braked = guard.output().linear;
+  guard.command(at(10450ms), {0.5, 0.0});
+  EXPECT_DOUBLE_EQ(guard.step(at(10450ms)).linear, braked + 0.3 * 0.05);
+}
+
 TEST(DriveGuard, RefusesACommandThatIsNotFinite) {
   DriveGuard guard({});
   EXPECT_FALSE(guard.command(at(0s), {nan, 0.0}));
