@@ -160,10 +160,11 @@ RunReport Container::run_simulated_time(const RunControl& control, const Activit
 /// Before the start there is no time at which anybody could be activated.
 std::optional<RunReport> Container::wait_for_clock(const RunControl& control) {
   if (!clock_reader_) return std::nullopt;
+  const Steady::time_point began = Steady::now();  // the wait for the other containers does not count
   while (!clock_reader_->wait_for_first(Steady::now() + kProgressPeriod)) {
     if (stop_wanted(control)) return interrupted();
     if (const auto wish = finish_wish()) return RunReport{.end = wish->end, .reason = wish->reason};
-    if (clock_reader_->silence() >= kFirstClockPatience) return clock_lost(spec_, kFirstClockPatience);
+    if (Steady::now() - began >= kFirstClockPatience) return clock_lost(spec_, kFirstClockPatience);
   }
   return std::nullopt;
 }

@@ -98,14 +98,14 @@ pid_t Supervised::container(const std::string& name) const {
 
 void Supervised::signal(int number) { process_->signal(number); }
 
-void Supervised::wait_until_nobody_lives() {
-  const auto end = Clock::now() + kPatience;
+void Supervised::wait_until_nobody_lives(std::chrono::seconds patience) {
+  const auto end = Clock::now() + patience;
   while (read_more(1000))
     if (Clock::now() >= end) throw std::runtime_error("somebody still lives; this was said:\n" + said_);
 }
 
-Result Supervised::wait() {
-  wait_until_nobody_lives();
+Result Supervised::wait(std::chrono::seconds patience) {
+  wait_until_nobody_lives(patience);
   result_ = process_->wait();
   result_.err = said_;
   return result_;

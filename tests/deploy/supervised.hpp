@@ -35,11 +35,12 @@ class Supervised {
   /// To the program that supervises.
   void signal(int number);
 
-  /// Waits until nobody holds the run's standard error any more, that is, every process is gone.
-  void wait_until_nobody_lives();
+  /// Waits until nobody holds the run's standard error any more, that is, every process is gone. Throws if that takes
+  /// longer than the patience.
+  void wait_until_nobody_lives(std::chrono::seconds patience = std::chrono::seconds(60));
 
   /// Waits for the program's end, and then for everybody's.
-  Result wait();
+  Result wait(std::chrono::seconds patience = std::chrono::seconds(60));
   /// The last line of that result.
   nlohmann::json summary() const { return nlohmann::json::parse(lines_of(result_.out).back()); }
   /// The summary's row of this container.
