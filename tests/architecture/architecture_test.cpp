@@ -49,7 +49,7 @@ const std::vector<Arrow> arrows = {
      {own_folder, "components/grid/", "framework/geometry/", "framework/component/time.hpp"},
      {"framework/geometry/messages.hpp"}},
 
-    {"sim/simulator_component\\.cpp",
+    {"sim/(simulator_component\\.cpp|component/.*)",
      {"sim/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // Compiled for other processors: whatever inline functions they saw, the whole program might get.
     {"sim/ray_kernel_avx.*\\.cpp", {"sim/ray_kernel.hpp"}},

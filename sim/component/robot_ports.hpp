@@ -1,0 +1,59 @@
+/// The ports of one robot of the component sim/world.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "framework/kervan.hpp"
+#include "geometry_msgs/msg/TwistStamped.hpp"
+#include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
+#include "nav_msgs/msg/Odometry.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
+#include "sensor_msgs/msg/Range.hpp"
+#include "sim/simulation.hpp"
+#include "tf2_msgs/msg/TFMessage.hpp"
+
+namespace kervan::sim {
+
+/// Reads a robot's commands and publishes what it measures and does. Its frames are <name>/odom, <name>/base_link and,
+/// with a laser, <name>/laser.
+class RobotPorts {
+ public:
+  RobotPorts(Component* owner, const std::string& name, bool has_laser);
+
+  /// Hands the drive what has been commanded since the last step.
+  void steer(Simulation& simulation, std::size_t robot);
+
+  /// Publishes what is new at `now`, which is `simulated` in the simulation, and adds the robot's frames to `frames` if
+  /// its odometry is new: map to odom only if asked for.
+  void publish(const Robot& robot, Duration simulated, Time now, tf2_msgs::msg::TFMessage& frames, bool map_to_odom);
+
+  std::uint64_t contacts() const { return contacts_; }  ///< published so far
+  bool last_refused() const { return last_refused_; }   ///< the last command was not finite
+  const std::string& command_name() const { return cmd_vel_.name(); }
+
+ private:
+  void publish_truth(const Robot& robot, Time now);
+  void publish_odometry(const OdometryReading& reading, Time now);
+  void publish_sonar(const Robot& robot, Time now);
+  void publish_scan(const Robot& robot, Time now);
+  void publish_contacts(const Robot& robot, Time now);
+
+  std::string odom_frame_;
+  std::string base_frame_;
+  std::string laser_frame_;
+  Input<geometry_msgs::msg::TwistStamped> cmd_vel_;
+  Output<kervan_msgs::msg::SonarArray> sonar_;
+  std::optional<Output<sensor_msgs::msg::LaserScan>> scan_;
+  Output<nav_msgs::msg::Odometry> odom_;
+  Output<nav_msgs::msg::Odometry> truth_;
+  Output<kervan_msgs::msg::Contact> contact_;
+  Output<sensor_msgs::msg::Range> clearance_;
+  std::uint64_t contacts_ = 0;
+  double min_clearance_ = infinity;
+  bool last_refused_ = false;
+};
+
+}  // namespace kervan::sim
