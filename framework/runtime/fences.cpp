@@ -19,7 +19,7 @@ using kervan_msgs::msg::FenceWish;
 constexpr const char* kFenceTopic = "/kervan/fence";
 
 /// A member that was not heard of for so long is lost: with the time it takes to tell everybody, less than 2 s.
-constexpr Duration kLease = 1200ms;
+constexpr Duration kLease = 1500ms;
 /// How often a waiting or working container says that it is alive.
 constexpr Duration kAssertPeriod = 200ms;
 /// How often whoever waits looks whether it still should.

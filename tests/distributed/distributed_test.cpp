@@ -270,7 +270,7 @@ class Mirror final : public dds::SampleSink {
   using Fence = kervan_msgs::msg::Fence;
   /// As of every container.
   inline static const QosProfile kProfile{
-      .name = "fence", .depth = 0, .liveliness = Liveliness::manual, .lease = 1200ms, .trace = false};
+      .name = "fence", .depth = 0, .liveliness = Liveliness::manual, .lease = 1500ms, .trace = false};
 
   std::mutex mutex_;
   std::deque<Sample<Fence>> heard_;
@@ -350,7 +350,7 @@ TEST(Distributed, AnInputOfTheFrameworksOwnTopicsIsRefused) {
       "composition in one container can do that");
 }
 
-// In processes. A member says "began" when time has moved, and at the end why, and the trace.
+// In processes. A member says "began" when all are there and it is active, and at the end why, and the trace.
 
 struct Processes {
   std::vector<std::unique_ptr<Peer>> members;
@@ -386,9 +386,8 @@ int be_member(const std::vector<std::string>& arguments) {
   const ContainerSpec spec = stations(std::stoull(arguments.at(0)), placement, self, arguments.at(3));
   RunControl control;
   if (const long limit = std::stol(arguments.at(4)); limit > 0) control.limit = std::chrono::milliseconds(limit);
-  bool began = false;
-  control.progress = [&](Time now) {
-    if (now == Time{} || std::exchange(began, true)) return;
+  control.phase = [](runtime::RunPhase phase) {
+    if (phase != runtime::RunPhase::active) return;
     std::puts("began");
     std::fflush(stdout);
   };
