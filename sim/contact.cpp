@@ -91,9 +91,15 @@ void Body::begin_contact(const Surroundings& around) {
   last_ = {room.all.on_obstacle, pose_, room.other ? room.other->name() : std::string()};
 }
 
+bool Body::put(const Pose2& pose, const Surroundings& around) {
+  if (!try_pose(pose, around)) return false;
+  touching_ = false;
+  return true;
+}
+
 void Body::look(const Surroundings& around) {
   const double among_robots = around.room_among_robots(outline_, pose_);
-  if (among_robots == infinity || (!touching_ && among_robots >= min_clearance_)) return;
+  if (!touching_ && !(among_robots < min_clearance_)) return;
   const Room room = around.room(outline_, pose_);
   room_ = room.world;
   clear_ = room.all.distance;

@@ -36,6 +36,9 @@ class Body {
   /// on.
   Moved move(const Motion& wanted, const Surroundings& around);
 
+  /// Lifts the body and puts it down at `pose`, touching nothing. False, and nothing changes, if there is no room.
+  bool put(const Pose2& pose, const Surroundings& around);
+
   /// Others may have come nearer or gone away since the last movement.
   void look(const Surroundings& around);
 

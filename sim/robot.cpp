@@ -1,14 +1,21 @@
 #include "sim/robot.hpp"
 
-#include <stdexcept>
+#include <cmath>
 #include <utility>
 
 namespace kervan::sim {
 
 namespace {
 
+void require_finite(const std::string& robot, const Pose2& pose) {
+  if (!pose.position().allFinite() || !std::isfinite(pose.yaw))
+    throw std::invalid_argument("robot " + robot + ": its pose must be finite");
+}
+
 RobotSetup valid(RobotSetup setup) {
+  if (setup.name.empty()) throw std::invalid_argument("a robot needs a name");
   require_valid(setup.model);
+  require_finite(setup.name, setup.start);
   if (setup.sonar_period <= Duration::zero() || setup.laser_period <= Duration::zero() ||
       setup.odometry_period <= Duration::zero())
     throw std::invalid_argument("robot " + setup.name + ": the periods of its sensors must be positive");
@@ -19,13 +26,17 @@ RobotSetup valid(RobotSetup setup) {
   return setup;
 }
 
+std::string what_is_in_the_way(const Outline& outline, const Pose2& pose, const Surroundings& around) {
+  const Room room = around.room(outline, pose);
+  return room.other ? "robot " + room.other->name() : "an obstacle";
+}
+
 Body placed(const RobotSetup& setup, const Surroundings& around) {
   try {
     return Body(setup.model.outline, setup.start, around);
   } catch (const std::invalid_argument&) {
-    const Room room = around.room(setup.model.outline, setup.start);
-    throw std::invalid_argument("robot " + setup.name + " starts in or against " +
-                                (room.other ? "robot " + room.other->name() : "an obstacle"));
+    throw NoRoom("robot " + setup.name + " starts in or against " +
+                 what_is_in_the_way(setup.model.outline, setup.start, around));
   }
 }
 
@@ -59,10 +70,19 @@ void Robot::measure(const Surroundings& around, Duration before, Duration now) {
   if (laser_ && due(setup_.laser_period, before, now)) measure_laser(around, now);
 }
 
-void Robot::measure_first(const Surroundings& around) {
-  measure_sonar(around, Duration::zero());
-  if (laser_) measure_laser(around, Duration::zero());
-  measure_odometry(Duration::zero());
+void Robot::measure_first(const Surroundings& around, Duration now) {
+  body_.look(around);
+  measure_sonar(around, now);
+  if (laser_) measure_laser(around, now);
+  measure_odometry(now);
+}
+
+void Robot::teleport(const Pose2& pose, const Surroundings& around) {
+  require_finite(name(), pose);
+  if (!body_.put(pose, around))
+    throw NoRoom("robot " + name() + " would stand in or against " + what_is_in_the_way(body_.outline(), pose, around));
+  drive_.stop_driving();
+  drive_.stop_turning();
 }
 
 void Robot::measure_sonar(const Surroundings& around, Duration now) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -50,10 +51,16 @@ struct OdometryReading {
   Twist2 twist;  ///< of base_link
 };
 
+/// A robot cannot stand where it is wanted: an obstacle or another robot is in the way.
+class NoRoom : public std::invalid_argument {
+ public:
+  using std::invalid_argument::invalid_argument;
+};
+
 class Robot {
  public:
-  /// Throws std::invalid_argument, naming the robot, if the model or a setting cannot be or there is no room for it at
-  /// its start.
+  /// Throws NoRoom if it does not fit at its start, and another std::invalid_argument if the model or a setting cannot
+  /// be; both name the robot.
   Robot(RobotSetup setup, std::uint64_t seed, const Surroundings& around);
 
   void command(const Twist2& wanted, Duration now) { drive_.command(wanted, now); }
@@ -65,8 +72,11 @@ class Robot {
   /// and not after `now`.
   void measure(const Surroundings& around, Duration before, Duration now);
 
-  /// Measures with all sensors at time 0.
-  void measure_first(const Surroundings& around);
+  /// The robot has just been put into the world: measures with all its sensors.
+  void measure_first(const Surroundings& around, Duration now);
+
+  /// Stands still at `pose`; see Simulation::teleport.
+  void teleport(const Pose2& pose, const Surroundings& around);
 
   void touched_by(const std::string& other, const Vector2& point) { body_.touched_by(other, point); }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <string_view>
 #include <vector>
 
 #include "sim/robot.hpp"
@@ -13,11 +15,30 @@ namespace kervan::sim {
 /// The same world, robots, seed, commands and steps give the same results to the last bit, and those of one robot do
 /// not depend on where it stands in the list. Within a step the robots drive one after the other, in the order of their
 /// names; then all of them measure. They see each other's bodies and cannot drive through each other.
+/// To begin anew, build another one out of the same world and setups: nothing is left over from one to the next.
 class Simulation {
  public:
-  /// The world may be shared with other simulations. Throws std::invalid_argument, naming the robot, if two robots have
-  /// one name, two of them stand in each other, or one cannot be as its setup wants it.
+  /// The world may be shared with other simulations. Throws NoRoom or another std::invalid_argument, naming the robot,
+  /// if two robots have one name, two of them stand in each other, or one cannot be as its setup wants it.
   Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed);
+
+  /// Adds a robot behind those that are there. It stands still at its start, measures with all its sensors at once, as
+  /// the others did at time 0, and from then on when they are due. Throws as the constructor does, and changes nothing
+  /// then.
+  void spawn(RobotSetup robot);
+
+  /// Takes the robot away; those behind it in the list move up by one. Throws std::invalid_argument if nobody has the
+  /// name.
+  void remove(std::string_view name);
+
+  /// Lifts the robot and puts it down at `pose`, of base_link in map, where it stands still until the next step. Its
+  /// wheels have not turned, so its odometry does not notice; a command that is still fresh goes on. Throws NoRoom if
+  /// something is in the way there, or another std::invalid_argument if nobody has the name or the pose is not finite,
+  /// and changes nothing then.
+  void teleport(std::string_view name, const Pose2& pose);
+
+  /// The place of a robot in the list.
+  std::optional<std::size_t> find(std::string_view name) const;
 
   /// The robot takes this speed from the next step on, and for at most its command_timeout.
   void command(std::size_t robot, const Twist2& wanted) { robots_.at(robot).command(wanted, now_); }
@@ -32,9 +53,12 @@ class Simulation {
 
  private:
   Surroundings around(std::size_t robot) const { return {*world_, bodies_, robot}; }
+  void add(RobotSetup setup);
+  std::size_t place_of(std::string_view name) const;
   void drive(std::size_t robot, Duration dt);
 
   std::shared_ptr<const World> world_;
+  std::uint64_t seed_;
   std::vector<Robot> robots_;
   std::vector<PlacedBody> bodies_;  // of the robots, in their order
   std::vector<std::size_t> order_;  // of the robots by their names
