@@ -10,13 +10,15 @@ namespace {
 constexpr double skin = 1e-6;          // m; nothing comes nearer
 constexpr double released = 1e-3;      // m; a touch has ended when everything is farther
 constexpr double longest_move = 0.01;  // m; far less than any body is wide, so no obstacle is jumped over
+constexpr double doubt = 1e-9;         // m; more than the rounding of sums of distances
 }  // namespace
 
 Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around) : outline_(outline), pose_(start) {
   if (!try_pose(start, around)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
 }
 
-/// No point of the body moves farther than this.
+double Body::heeds() const { return std::max(min_clearance_, released); }
+
 double Body::length(const Motion& motion) const {
   return std::abs(motion.distance) + outline_.circumradius() * std::abs(motion.turn);
 }
@@ -36,7 +38,7 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
   if (total == 0.0) return {};
 
   // Far from everything nothing needs to be looked at: neither can the body touch, nor come nearer than it ever was.
-  const double room = std::min(room_, around.room_among_robots(outline_, pose_));
+  const double room = std::min(room_, around.room_among_bodies(outline_, pose_, heeds() + total + doubt));
   if (!touching_ && room - total > min_clearance_) {
     pose_ = advance(pose_, wanted);
     room_ -= total;
@@ -88,7 +90,7 @@ void Body::begin_contact(const Surroundings& around) {
   const Room room = around.room(outline_, pose_);
   touching_ = true;
   ++contacts_;
-  last_ = {room.all.on_obstacle, pose_, room.other ? room.other->name() : std::string()};
+  last_ = {room.all.on_obstacle, pose_, room.other ? *room.other : std::string()};
 }
 
 bool Body::put(const Pose2& pose, const Surroundings& around) {
@@ -98,8 +100,7 @@ bool Body::put(const Pose2& pose, const Surroundings& around) {
 }
 
 void Body::look(const Surroundings& around) {
-  const double among_robots = around.room_among_robots(outline_, pose_);
-  if (!touching_ && !(among_robots < min_clearance_)) return;
+  if (!touching_ && !(around.room_among_bodies(outline_, pose_, min_clearance_) < min_clearance_)) return;
   const Room room = around.room(outline_, pose_);
   room_ = room.world;
   clear_ = room.all.distance;

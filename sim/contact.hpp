@@ -13,7 +13,7 @@ namespace kervan::sim {
 struct Contact {
   Vector2 point = Vector2::Zero();  ///< in map, on the obstacle
   Pose2 pose;                       ///< of the body in map when the touch began
-  std::string other;                ///< the robot that is touched; empty: the world
+  std::string other;                ///< the name of the body that is touched; empty: the world
 };
 
 /// What became of a movement.
@@ -57,6 +57,12 @@ class Body {
   /// The smallest clearance to the world and to other bodies so far, m.
   double min_clearance() const { return min_clearance_; }
 
+  /// As long as other bodies stay farther than this, it makes no difference to this one whether they are there.
+  double heeds() const;
+
+  /// No point of the body moves farther than this.
+  double length(const Motion& motion) const;
+
  private:
   /// Takes the pose if it is free.
   bool try_pose(const Pose2& pose, const Surroundings& around);
@@ -65,7 +71,6 @@ class Body {
   /// One movement that is short enough not to jump over anything.
   Moved move_shortly(const Motion& wanted, const Surroundings& around);
   void begin_contact(const Surroundings& around);
-  double length(const Motion& motion) const;
 
   Outline outline_;
   Pose2 pose_;

@@ -8,8 +8,7 @@
 
 namespace kervan::sim {
 
-Laser::Laser(const LaserMount& mount, const LaserSettings& settings)
-    : mount_(mount), settings_(settings), reach_(mount.pose.position().norm() + mount.max_range) {
+Laser::Laser(const LaserMount& mount, const LaserSettings& settings) : mount_(mount), settings_(settings) {
   if (!(settings.noise >= 0.0)) throw std::invalid_argument("the noise of the laser must not be negative");
   if (!(settings.drop_out >= 0.0 && settings.drop_out <= 1.0))
     throw std::invalid_argument("the drop-out probability of the laser must be in [0, 1]");
@@ -20,23 +19,20 @@ Laser::Laser(const LaserMount& mount, const LaserSettings& settings)
 void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
                     std::span<double> ranges) const {
   assert(ranges.size() == size());
-  constexpr std::size_t most = 64;  // beams at a time, on the stack
+  constexpr std::size_t most = 256;  // beams at a time, on the stack
   std::array<Vector2, most> turned;
   std::array<RayHit, most> hits;
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   const Vector2 origin = pose * mount_.pose.position();
-  const std::vector<const PlacedBody*> robots = around.robots_within(pose.position(), reach_);
   for (std::size_t first = 0; first < size(); first += most) {
     const std::size_t count = std::min(most, size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       const Vector2& d = directions_[first + i];
       turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
     }
-    around.world().cast(origin, {turned.data(), count}, mount_.max_range, {hits.data(), count});
+    around.cast(origin, {turned.data(), count}, mount_.max_range, {hits.data(), count});
     for (std::size_t i = 0; i < count; ++i) {
       double range = hits[i].distance;
-      if (const auto on_robot = cast(robots, {origin, turned[i]}, std::min(range, mount_.max_range)))
-        range = on_robot->distance;
       // Both numbers are drawn always, so that one imperfection does not change what the other does.
       auto sequence = random.at(RandomUse::laser, static_cast<std::uint16_t>(first + i), scan);
       const bool dropped = sequence.uniform() < settings_.drop_out;

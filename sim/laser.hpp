@@ -34,7 +34,6 @@ class Laser {
  private:
   LaserMount mount_;
   LaserSettings settings_;
-  double reach_ = 0.0;               // m from base_link that any beam sees
   std::vector<Vector2> directions_;  // of the beams in base_link
 };
 

@@ -26,17 +26,20 @@ RobotSetup valid(RobotSetup setup) {
   return setup;
 }
 
-std::string what_is_in_the_way(const Outline& outline, const Pose2& pose, const Surroundings& around) {
+/// What to throw when `robot` "would stand" at `pose`, or "starts" there.
+NoRoom no_room(const std::string& robot, const char* stands, const Outline& outline, const Pose2& pose,
+               const Surroundings& around) {
   const Room room = around.room(outline, pose);
-  return room.other ? "robot " + room.other->name() : "an obstacle";
+  const std::string other = room.other ? *room.other : std::string();
+  return {robot, other,
+          "robot " + robot + " " + stands + " in or against " + (other.empty() ? "an obstacle" : "robot " + other)};
 }
 
 Body placed(const RobotSetup& setup, const Surroundings& around) {
   try {
     return Body(setup.model.outline, setup.start, around);
   } catch (const std::invalid_argument&) {
-    throw NoRoom("robot " + setup.name + " starts in or against " +
-                 what_is_in_the_way(setup.model.outline, setup.start, around));
+    throw no_room(setup.name, "starts", setup.model.outline, setup.start, around);
   }
 }
 
@@ -56,8 +59,10 @@ Robot::Robot(RobotSetup setup, std::uint64_t seed, const Surroundings& around)
   if (setup_.model.laser) laser_sweep_.ranges.resize(laser_.emplace(*setup_.model.laser, setup_.laser).size());
 }
 
-void Robot::drive(const Surroundings& around, Duration now, Duration dt) {
-  const Moved moved = body_.move(drive_.step(now, dt), around);
+const Motion& Robot::plan(Duration now, Duration dt) { return planned_ = drive_.step(now, dt); }
+
+void Robot::drive(const Surroundings& around) {
+  const Moved moved = body_.move(planned_, around);
   if (moved.stopped_driving) drive_.stop_driving();
   if (moved.stopped_turning) drive_.stop_turning();
   odometry_.add(moved.motion);
@@ -79,8 +84,7 @@ void Robot::measure_first(const Surroundings& around, Duration now) {
 
 void Robot::teleport(const Pose2& pose, const Surroundings& around) {
   require_finite(name(), pose);
-  if (!body_.put(pose, around))
-    throw NoRoom("robot " + name() + " would stand in or against " + what_is_in_the_way(body_.outline(), pose, around));
+  if (!body_.put(pose, around)) throw no_room(name(), "would stand", body_.outline(), pose, around);
   drive_.stop_driving();
   drive_.stop_turning();
 }

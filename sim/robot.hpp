@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sim/contact.hpp"
@@ -51,10 +52,18 @@ struct OdometryReading {
   Twist2 twist;  ///< of base_link
 };
 
-/// A robot cannot stand where it is wanted: an obstacle or another robot is in the way.
+/// A robot cannot stand where it is wanted: something is in the way.
 class NoRoom : public std::invalid_argument {
  public:
-  using std::invalid_argument::invalid_argument;
+  NoRoom(std::string robot, std::string other, const std::string& message)
+      : std::invalid_argument(message), robot_(std::move(robot)), other_(std::move(other)) {}
+
+  const std::string& robot() const { return robot_; }
+  const std::string& other() const { return other_; }  ///< the body that is in the way; empty: the world is
+
+ private:
+  std::string robot_;
+  std::string other_;
 };
 
 class Robot {
@@ -65,8 +74,12 @@ class Robot {
 
   void command(const Twist2& wanted, Duration now) { drive_.command(wanted, now); }
 
-  /// Drives from `now` to `now + dt`.
-  void drive(const Surroundings& around, Duration now, Duration dt);
+  /// What the drive does from `now` to `now + dt` if nothing is in the way.
+  const Motion& plan(Duration now, Duration dt);
+  const Motion& planned() const { return planned_; }
+
+  /// Drives as planned, as far as the surroundings allow.
+  void drive(const Surroundings& around);
 
   /// When everybody has driven: sees how near the others are, and measures with the sensors that are due after `before`
   /// and not after `now`.
@@ -102,6 +115,7 @@ class Robot {
   RobotSetup setup_;
   RandomSource random_;
   DifferentialDrive drive_;
+  Motion planned_;
   Body body_;
   Odometry odometry_;
   Sonars sonars_;

@@ -2,17 +2,24 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 namespace kervan::sim {
 
-Simulation::Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed)
-    : world_(std::move(world)), seed_(seed) {
+namespace {
+constexpr double doubt = 1e-9;  // m; more than the rounding of sums of distances
+}
+
+Simulation::Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed,
+                       int threads)
+    : world_(std::move(world)), seed_(seed), workers_(std::make_unique<Workers>(threads)) {
   robots_.reserve(robots.size());
   for (RobotSetup& setup : robots) add(std::move(setup));
-  for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i].measure_first(around(i), now_);
+  bodies_.sort();
+  workers_->for_each(robots_.size(), [this](std::size_t i) { robots_[i].measure_first(around(i), now_); });
 }
 
 /// Those that are there already are in its way.
@@ -23,9 +30,11 @@ void Simulation::add(RobotSetup setup) {
   if (place != order_.end() && robots_[*place].name() == setup.name)
     throw std::invalid_argument("two robots have the name " + setup.name);
   Robot robot(std::move(setup), seed_, around(bodies_.size()));
-  bodies_.emplace_back(robot.name(), robot.body().outline(), robot.pose());
+  bodies_.add(robot.name(), robot.body().outline(), robot.pose());
   order_.insert(place, robots_.size());
   robots_.push_back(std::move(robot));
+  ways_.resize(robots_.size());
+  has_driven_.resize(robots_.size());
 }
 
 void Simulation::spawn(RobotSetup robot) {
@@ -36,7 +45,7 @@ void Simulation::spawn(RobotSetup robot) {
 void Simulation::remove(std::string_view name) {
   const std::size_t robot = place_of(name);
   robots_.erase(robots_.begin() + static_cast<std::ptrdiff_t>(robot));
-  bodies_.erase(bodies_.begin() + static_cast<std::ptrdiff_t>(robot));
+  bodies_.remove(robot);
   std::erase(order_, robot);
   for (std::size_t& place : order_)
     if (place > robot) --place;
@@ -45,7 +54,7 @@ void Simulation::remove(std::string_view name) {
 void Simulation::teleport(std::string_view name, const Pose2& pose) {
   const std::size_t robot = place_of(name);
   robots_[robot].teleport(pose, around(robot));
-  bodies_[robot].move_to(pose);
+  bodies_.move(robot, pose);
 }
 
 std::optional<std::size_t> Simulation::find(std::string_view name) const {
@@ -63,16 +72,37 @@ std::size_t Simulation::place_of(std::string_view name) const {
 
 void Simulation::step(Duration dt) {
   assert(dt > Duration::zero());
-  for (const std::size_t i : order_) drive(i, dt);
-  for (std::size_t i = 0; i < robots_.size(); ++i) robots_[i].measure(around(i), now_, now_ + dt);
+  drive(dt);
+  bodies_.sort();
+  workers_->for_each(robots_.size(), [this, dt](std::size_t i) { robots_[i].measure(around(i), now_, now_ + dt); });
   now_ += dt;
 }
 
-void Simulation::drive(std::size_t robot, Duration dt) {
+/// The robots drive one after the other. Who stays so far from everybody that it makes no difference when it drives may
+/// do so at once, and beside others.
+void Simulation::drive(Duration dt) {
+  workers_->for_each(robots_.size(), [this, dt](std::size_t i) {
+    const Motion& planned = robots_[i].plan(now_, dt);
+    ways_[i] = std::abs(planned.distance);
+  });
+  const double longest_way = ways_.empty() ? 0.0 : *std::max_element(ways_.begin(), ways_.end());
+  workers_->for_each(robots_.size(), [this, longest_way](std::size_t i) {
+    Robot& robot = robots_[i];
+    const Body& body = robot.body();
+    const double near = body.heeds() + body.length(robot.planned()) + longest_way + doubt;
+    has_driven_[i] = around(i).room_among_bodies(body.outline(), body.pose(), near) >= near;
+    if (has_driven_[i]) robot.drive(*world_);
+  });
+  for (const std::size_t i : order_) {
+    if (!has_driven_[i]) drive_among_others(i);
+    bodies_.move(i, robots_[i].pose());
+  }
+}
+
+void Simulation::drive_among_others(std::size_t robot) {
   Robot& driving = robots_[robot];
   const std::uint64_t contacts = driving.body().contacts();
-  driving.drive(around(robot), now_, dt);
-  bodies_[robot].move_to(driving.pose());
+  driving.drive(around(robot));
   if (driving.body().contacts() == contacts) return;
   const Contact& contact = driving.body().last_contact();
   if (contact.other.empty()) return;

@@ -1,4 +1,4 @@
-/// A world with robots in it, and its time. Values in, values out: no clock, no thread, no input or output.
+/// A world with robots in it, and its time. Values in, values out: no clock, no input or output.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,22 @@
 #include <vector>
 
 #include "sim/robot.hpp"
+#include "sim/workers.hpp"
 #include "sim/world.hpp"
 
 namespace kervan::sim {
 
-/// The same world, robots, seed, commands and steps give the same results to the last bit, and those of one robot do
-/// not depend on where it stands in the list. Within a step the robots drive one after the other, in the order of their
-/// names; then all of them measure. They see each other's bodies and cannot drive through each other.
-/// To begin anew, build another one out of the same world and setups: nothing is left over from one to the next.
+/// The same world, robots, seed, commands and steps give the same results to the last bit, on any number of threads,
+/// and those of one robot do not depend on where it stands in the list. Within a step the robots drive one after the
+/// other, in the order of their names; then all of them measure. They see each other's bodies and cannot drive through
+/// each other. To begin anew, build another one out of the same world and setups: nothing is left over from one to the
+/// next.
 class Simulation {
  public:
   /// The world may be shared with other simulations. Throws NoRoom or another std::invalid_argument, naming the robot,
-  /// if two robots have one name, two of them stand in each other, or one cannot be as its setup wants it.
-  Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed);
+  /// if two robots have one name, two of them stand in each other, or one cannot be as its setup wants it. Steps use
+  /// `threads` threads, at least 1: the caller's and others of its own.
+  Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed, int threads = 1);
 
   /// Adds a robot behind those that are there. It stands still at its start, measures with all its sensors at once, as
   /// the others did at time 0, and from then on when they are due. Throws as the constructor does, and changes nothing
@@ -55,14 +58,20 @@ class Simulation {
   Surroundings around(std::size_t robot) const { return {*world_, bodies_, robot}; }
   void add(RobotSetup setup);
   std::size_t place_of(std::string_view name) const;
-  void drive(std::size_t robot, Duration dt);
+  void drive(Duration dt);
+  void drive_among_others(std::size_t robot);
 
   std::shared_ptr<const World> world_;
   std::uint64_t seed_;
+  std::unique_ptr<Workers> workers_;
   std::vector<Robot> robots_;
-  std::vector<PlacedBody> bodies_;  // of the robots, in their order
+  Bodies bodies_;                   // of the robots, in their order
   std::vector<std::size_t> order_;  // of the robots by their names
   Duration now_{0};
+
+  // Of each robot, within a step.
+  std::vector<double> ways_;               // m that it wants to go
+  std::vector<unsigned char> has_driven_;  // not bool: several threads write them
 };
 
 }  // namespace kervan::sim

@@ -38,19 +38,13 @@ class SimulatorComponent final : public Component {
     if (params_.map.path.empty()) return Simulation(std::make_shared<const World>(Obstacles{}), {}, seed);
     const auto world = std::make_shared<const World>(load_world(params_.map.path));
     std::vector<RobotSetup> setups;
-    for (const auto& [name, robot] : params_.robots) {
-      RobotSetup setup = robot.setup(name);
-      for (const RobotSetup& other : setups) {
-        const PlacedBody body(other.name, other.model.outline, other.start);
-        if (!(clearance(body, setup.model.outline, setup.start).distance > 0.0))
-          throw ParameterError("robots." + name + ".start", "the robot would stand in " + other.name);
-      }
-      setups.push_back(std::move(setup));
-      if (!(world->clearance(setups.back().model.outline, robot.start).distance > 0.0))
-        throw ParameterError("robots." + name + ".start", "the robot would stand in an obstacle of " + world->name());
-    }
+    for (const auto& [name, robot] : params_.robots) setups.push_back(robot.setup(name));
     try {
       return Simulation(world, std::move(setups), seed);
+    } catch (const NoRoom& error) {
+      throw ParameterError(
+          "robots." + error.robot() + ".start",
+          "the robot would stand in " + (error.other().empty() ? "an obstacle of " + world->name() : error.other()));
     } catch (const std::invalid_argument& error) {
       throw ParameterError("robots", error.what());
     }

@@ -18,7 +18,6 @@ Sonars::Sonars(const SonarRing& ring, const SonarSettings& settings) : ring_(rin
   // Each ray stands in the middle of an equal share of the cone: 32 rays in 30 degrees end at 14.53 degrees.
   const double share = ring.field_of_view / settings.rays;
   for (const Pose2& pose : ring.poses) {
-    reach_ = std::max(reach_, pose.position().norm() + ring.max_range);
     for (int i = 0; i < settings.rays; ++i)
       directions_.push_back(geometry::heading(pose.yaw - 0.5 * ring.field_of_view + (i + 0.5) * share));
   }
@@ -28,10 +27,9 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
                      std::span<double> ranges) const {
   assert(ranges.size() == size());
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  const std::vector<const PlacedBody*> robots = around.robots_within(pose.position(), reach_);
   const auto rays = static_cast<std::size_t>(settings_.rays);
   for (std::size_t i = 0; i < size(); ++i) {
-    double range = echo(around.world(), robots, pose * ring_.poses[i].position(), {&directions_[i * rays], rays}, c, s);
+    double range = echo(around, pose * ring_.poses[i].position(), {&directions_[i * rays], rays}, c, s);
     // Both numbers are drawn always, so that one imperfection does not change what the other does.
     auto sequence = random.at(RandomUse::sonar, static_cast<std::uint16_t>(i), scan);
     const bool dropped = sequence.uniform() < settings_.drop_out;
@@ -41,8 +39,8 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
   }
 }
 
-double Sonars::echo(const World& world, Robots robots, const Vector2& origin, std::span<const Vector2> directions,
-                    double c, double s) const {
+double Sonars::echo(const Surroundings& around, const Vector2& origin, std::span<const Vector2> directions, double c,
+                    double s) const {
   constexpr std::size_t most = 64;  // rays at a time, on the stack
   std::array<Vector2, most> turned;
   std::array<RayHit, most> hits;
@@ -53,11 +51,9 @@ double Sonars::echo(const World& world, Robots robots, const Vector2& origin, st
       const Vector2& d = directions[first + i];
       turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
     }
-    world.cast(origin, {turned.data(), count}, ring_.max_range, {hits.data(), count});
+    around.cast(origin, {turned.data(), count}, ring_.max_range, {hits.data(), count});
     for (std::size_t i = 0; i < count; ++i) {
-      RayHit hit = hits[i];
-      const auto on_robot = cast(robots, {origin, turned[i]}, std::min(nearest, ring_.max_range));
-      if (on_robot && on_robot->distance < hit.distance) hit = *on_robot;
+      const RayHit& hit = hits[i];
       if (hit.distance >= nearest) continue;
       if (settings_.incidence_limit && -turned[i].dot(hit.normal) < min_cosine_) continue;
       nearest = hit.distance;

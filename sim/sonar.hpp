@@ -36,16 +36,13 @@ class Sonars {
                std::span<double> ranges) const;
 
  private:
-  using Robots = std::span<const PlacedBody* const>;
-
-  /// Distance to the nearest echo before noise, of the world or of one of the robots; infinity if there is none.
-  double echo(const World& world, Robots robots, const Vector2& origin, std::span<const Vector2> directions, double c,
+  /// Distance to the nearest echo before noise, of the world or of another body; infinity if there is none.
+  double echo(const Surroundings& around, const Vector2& origin, std::span<const Vector2> directions, double c,
               double s) const;
 
   SonarRing ring_;
   SonarSettings settings_;
   double min_cosine_ = 0.0;          // of the incidence angle
-  double reach_ = 0.0;               // m from base_link that any of them hears
   std::vector<Vector2> directions_;  // of all rays in base_link, `rays` for each sonar
 };
 

@@ -1,32 +1,83 @@
 #include "sim/surroundings.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
-#include <utility>
 
 namespace kervan::sim {
 
-PlacedBody::PlacedBody(std::string name, Outline outline, const Pose2& pose)
-    : name_(std::move(name)), outline_(std::move(outline)), corners_(outline_.corners().size()) {
-  move_to(pose);
+namespace {
+
+/// More than the rounding of the distances that are compared with it, so that what is left out never depends on the
+/// order in which bodies are visited.
+constexpr double doubt = 1e-9;
+
+/// From corner `i` to the next.
+Segment edge(std::span<const Vector2> corners, std::size_t i) {
+  return {corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]};
 }
 
-void PlacedBody::move_to(const Pose2& pose) {
-  pose_ = pose;
-  const std::span<const Vector2> corners = outline_.corners();
-  for (std::size_t i = 0; i < corners.size(); ++i) corners_[i] = pose * corners[i];
-}
+/// Rays from one point that turn counter-clockwise; finds those that point at a disc without asking each.
+class Bundle {
+ public:
+  explicit Bundle(std::span<const Vector2> directions) : directions_(directions) {}
 
-Clearance clearance(const PlacedBody& other, const Outline& outline, const Pose2& pose) {
+  /// Calls visit(ray) for all rays that pass within `radius` of the point `to_center` from their origin, and some more.
+  template <class Visit>
+  void visit_towards(const Vector2& to_center, double radius, Visit&& visit) const {
+    constexpr std::size_t few = 4;
+    constexpr double blur = 1e-6;  // rad; more than the rounding of what turned() compares
+    const std::size_t count = directions_.size();
+    const double distance = to_center.norm();
+    const double wide = radius + blur * distance;
+    if (count <= few || distance <= wide) return visit_all(0, count, visit);
+    const double sine = wide / distance, cosine = std::sqrt(1.0 - sine * sine);
+    const Vector2 u = to_center / distance;
+    const double right = turned({cosine * u.x() + sine * u.y(), cosine * u.y() - sine * u.x()});
+    const double left = turned({cosine * u.x() - sine * u.y(), cosine * u.y() + sine * u.x()});
+    if (right <= left) return visit_all(first_from(right), first_from(left), visit);
+    visit_all(0, first_from(left), visit);  // the first ray points at it
+    visit_all(first_from(right), count, visit);
+  }
+
+ private:
+  /// Grows with the angle from the first ray to `direction`, from 0 to 4 for a full turn.
+  double turned(const Vector2& direction) const {
+    const double along = directions_[0].dot(direction);
+    return cross(directions_[0], direction) >= 0.0 ? 1.0 - along : 3.0 + along;
+  }
+  std::size_t first_from(double turn) const {
+    std::size_t from = 0, to = directions_.size();
+    while (from < to) {
+      const std::size_t middle = (from + to) / 2;
+      if (turned(directions_[middle]) < turn)
+        from = middle + 1;
+      else
+        to = middle;
+    }
+    return from;
+  }
+  template <class Visit>
+  static void visit_all(std::size_t from, std::size_t to, Visit& visit) {
+    for (std::size_t i = from; i < to; ++i) visit(i);
+  }
+
+  std::span<const Vector2> directions_;
+};
+
+}  // namespace
+
+Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose) {
   const Pose2 to_body = pose.inverse();
   // One body wholly inside the other: no edges meet then.
-  if (outline.contains(to_body * other.pose().position()) ||
-      other.outline().contains(other.pose().inverse() * pose.position()))
+  if (outline.contains(to_body * bodies.center(other)) ||
+      bodies.outline(other).contains(bodies.pose(other).inverse() * pose.position()))
     return {0.0, pose.position(), pose.position()};
   Clearance nearest;
-  for (std::size_t i = 0; i < other.corners().size(); ++i) {
-    const Segment edge = other.edge(i);
-    const Clearance found = outline.clearance(Segment{to_body * edge.a, to_body * edge.b});
+  const std::span<const Vector2> corners = bodies.corners(other);
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const Segment side = edge(corners, i);
+    const Clearance found = outline.clearance(Segment{to_body * side.a, to_body * side.b});
     if (found.distance < nearest.distance) nearest = found;
   }
   nearest.on_obstacle = pose * nearest.on_obstacle;
@@ -38,59 +89,71 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   Room room;
   room.all = world_.clearance(outline, pose);
   room.world = room.all.distance;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i == self_) continue;
-    const PlacedBody& other = bodies_[i];
-    const double radii = outline.circumradius() + other.outline().circumradius();
-    if ((other.pose().position() - pose.position()).norm() - radii >= room.all.distance) continue;
-    const Clearance found = clearance(other, outline, pose);
-    if (found.distance >= room.all.distance) continue;
+  if (!bodies_) return room;
+  const auto consider = [&](std::size_t body) {
+    if (body == self_) return;
+    const double radii = outline.circumradius() + bodies_->radius(body);
+    if ((bodies_->center(body) - pose.position()).norm() - radii > room.all.distance + doubt) return;
+    const Clearance found = clearance(*bodies_, body, outline, pose);
+    if (found.distance > room.all.distance) return;
+    if (found.distance == room.all.distance && (!room.other || bodies_->name(body) >= *room.other)) return;
     room.all = found;
-    room.other = &other;
+    room.other = &bodies_->name(body);
+  };
+  // Nobody farther away than the nearest so far matters. Where nothing is near, the search grows.
+  const double radii = outline.circumradius() + bodies_->largest_radius() + doubt;
+  constexpr double usual = 1.0;  // m
+  for (double reach = std::min(usual, room.all.distance);; reach *= 2.0) {
+    const Vector2 extent = Vector2::Constant(std::min(reach, room.all.distance) + radii);
+    const bool all = bodies_->visit_box(pose.position() - extent, pose.position() + extent, consider);
+    if (all || room.all.distance <= reach) return room;
   }
-  return room;
 }
 
-double Surroundings::room_among_robots(const Outline& outline, const Pose2& pose) const {
+double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose, double within) const {
   double room = infinity;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i == self_) continue;
-    const double radii = outline.circumradius() + bodies_[i].outline().circumradius();
-    room = std::min(room, (bodies_[i].pose().position() - pose.position()).norm() - radii);
-  }
+  if (!bodies_) return room;
+  const Vector2 extent = Vector2::Constant(within + outline.circumradius() + bodies_->largest_radius() + doubt);
+  bodies_->visit_box(pose.position() - extent, pose.position() + extent, [&](std::size_t body) {
+    if (body == self_) return;
+    const double radii = outline.circumradius() + bodies_->radius(body);
+    room = std::min(room, (bodies_->center(body) - pose.position()).norm() - radii);
+  });
   return room;
 }
 
-std::vector<const PlacedBody*> Surroundings::robots_within(const Vector2& point, double range) const {
-  std::vector<const PlacedBody*> near;
-  for (std::size_t i = 0; i < bodies_.size(); ++i) {
-    if (i == self_) continue;
-    if ((bodies_[i].pose().position() - point).norm() - bodies_[i].outline().circumradius() <= range)
-      near.push_back(&bodies_[i]);
-  }
-  return near;
-}
+void Surroundings::cast(const Vector2& origin, std::span<const Vector2> directions, double range,
+                        std::span<RayHit> hits) const {
+  assert(std::isfinite(range));
+  world_.cast(origin, directions, range, hits);
+  if (!bodies_ || directions.empty()) return;
 
-std::optional<RayHit> cast(std::span<const PlacedBody* const> bodies, const Ray& ray, double range) {
-  double best = infinity;
-  Segment met;
-  for (const PlacedBody* body : bodies) {
-    // A disc around the body is missed by most rays.
-    const Vector2 to_center = body->pose().position() - ray.origin;
-    const double radius = body->outline().circumradius();
-    const double along = to_center.dot(ray.direction);
-    if (along < -radius || along - radius > std::min(best, range)) continue;
-    if (std::abs(cross(ray.direction, to_center)) > radius) continue;
-    for (std::size_t i = 0; i < body->corners().size(); ++i) {
-      const Segment edge = body->edge(i);
-      const double distance = hit_distance(ray, edge);
-      if (distance >= best) continue;
-      best = distance;
-      met = edge;
-    }
+  // Only bodies that reach into the box around all rays, as far as the world lets them go, can be met.
+  Vector2 low = origin, high = origin;
+  for (std::size_t i = 0; i < directions.size(); ++i) {
+    const Vector2 end = origin + std::min(range, hits[i].distance) * directions[i];
+    low = low.cwiseMin(end);
+    high = high.cwiseMax(end);
   }
-  if (!(best <= range) || best == infinity) return std::nullopt;
-  return RayHit{best, hit_normal(ray, met)};
+  const Vector2 extent = Vector2::Constant(bodies_->largest_radius() + doubt);
+  const Bundle bundle(directions);
+  bodies_->visit_box(low - extent, high + extent, [&](std::size_t body) {
+    if (body == self_) return;
+    const Vector2 to_center = bodies_->center(body) - origin;
+    const double radius = bodies_->radius(body);
+    bundle.visit_towards(to_center, radius, [&](std::size_t i) {
+      const Ray ray{origin, directions[i]};
+      const double along = to_center.dot(ray.direction);
+      if (along < -radius || along - radius > std::min(range, hits[i].distance)) return;
+      if (std::abs(cross(ray.direction, to_center)) > radius) return;
+      const std::span<const Vector2> corners = bodies_->corners(body);
+      for (std::size_t k = 0; k < corners.size(); ++k) {
+        const Segment side = edge(corners, k);
+        const double distance = hit_distance(ray, side);
+        if (distance < hits[i].distance && distance <= range) hits[i] = {distance, hit_normal(ray, side)};
+      }
+    });
+  });
 }
 
 }  // namespace kervan::sim

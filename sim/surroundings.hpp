@@ -1,73 +1,53 @@
-/// What a robot meets: the world, which never moves, and the bodies of the other robots where they are now. Metres, in
+/// What a robot meets: the world, which never moves, and the bodies of all that moves, where they are now. Metres, in
 /// the frame `map`.
 #pragma once
 
-#include <optional>
+#include <limits>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "sim/bodies.hpp"
 #include "sim/world.hpp"
 
 namespace kervan::sim {
 
-/// The body of a robot at a place in the map.
-class PlacedBody {
- public:
-  PlacedBody(std::string name, Outline outline, const Pose2& pose);
-
-  void move_to(const Pose2& pose);
-
-  const std::string& name() const { return name_; }
-  const Outline& outline() const { return outline_; }
-  const Pose2& pose() const { return pose_; }
-  std::span<const Vector2> corners() const { return corners_; }  ///< in map
-  Segment edge(std::size_t i) const { return {corners_[i], corners_[i + 1 == corners_.size() ? 0 : i + 1]}; }
-
- private:
-  std::string name_;
-  Outline outline_;
-  Pose2 pose_;
-  std::vector<Vector2> corners_;
-};
-
 /// How much room a body has, and what takes it.
 struct Room {
-  Clearance all;                      ///< to the nearest of everything
-  double world = infinity;            ///< m to the world alone
-  const PlacedBody* other = nullptr;  ///< the robot that is nearest; nullptr: the world is
+  Clearance all;                       ///< to the nearest of everything
+  double world = infinity;             ///< m to the world alone
+  const std::string* other = nullptr;  ///< the name of the body that is nearest; nullptr: the world is
 };
 
 class Surroundings {
  public:
-  /// `bodies` may hold the body of the robot that asks, at the place `self`; it is left out. Both arguments must
+  /// `bodies` may hold the body of the robot that asks, at the place `self`; it is left out. World and bodies must
   /// outlive the surroundings.
-  Surroundings(const World& world, std::span<const PlacedBody> bodies, std::size_t self)
-      : world_(world), bodies_(bodies), self_(self) {}
-  /// A world without other robots.
+  Surroundings(const World& world, const Bodies& bodies, std::size_t self)
+      : world_(world), bodies_(bodies.size() > 1 || self != 0 ? &bodies : nullptr), self_(self) {}
+  /// A world in which nothing moves.
   Surroundings(const World& world) : world_(world) {}  // NOLINT(google-explicit-constructor): it is nothing more
 
   const World& world() const { return world_; }
 
-  /// How much room the body has at `pose`. Exact.
+  /// How much room the body has at `pose`. Exact; of bodies that are equally near the first by name.
   Room room(const Outline& outline, const Pose2& pose) const;
 
-  /// No more than the distance of the body to any other robot; quick, and may be negative. Infinity without others.
-  double room_among_robots(const Outline& outline, const Pose2& pose) const;
+  /// No more than the distance of the body to any other; quick, and may be negative. If nobody is within `within` it is
+  /// any number from there on.
+  double room_among_bodies(const Outline& outline, const Pose2& pose, double within) const;
 
-  /// The other robots that anything within `range` of `point` may meet.
-  std::vector<const PlacedBody*> robots_within(const Vector2& point, double range) const;
+  /// What rays from one point meet, as World::cast: the nearest of the world and the bodies. The directions turn
+  /// counter-clockwise, by less than a full turn in all. `range` is finite. Exact as to the bodies.
+  void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
 
  private:
   const World& world_;
-  std::span<const PlacedBody> bodies_;
+  const Bodies* bodies_ = nullptr;  // nullptr: there are no others
   std::size_t self_ = 0;
 };
 
-/// The first of the bodies along the ray, no farther than `range`; nothing if there is none. Exact.
-std::optional<RayHit> cast(std::span<const PlacedBody* const> bodies, const Ray& ray, double range);
-
-/// How near two bodies are; 0 when they touch or overlap. Points in map, `on_obstacle` on `other`. Exact.
-Clearance clearance(const PlacedBody& other, const Outline& outline, const Pose2& pose);
+/// How near a body at `pose` and one of `bodies` are; 0 when they touch or overlap. Points in map, `on_obstacle` on the
+/// latter. Exact.
+Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose);
 
 }  // namespace kervan::sim

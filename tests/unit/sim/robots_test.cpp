@@ -21,10 +21,13 @@ void drive(Simulation& simulation, const std::vector<Twist2>& wanted, Duration t
   }
 }
 
-double gap(const Simulation& simulation) {
-  const Robot &a = simulation.robots()[0], &b = simulation.robots()[1];
-  return clearance(PlacedBody("", b.body().outline(), b.pose()), a.body().outline(), a.pose()).distance;
+double gap(const Robot& a, const Robot& b) {
+  Bodies bodies;
+  bodies.add(b.name(), b.body().outline(), b.pose());
+  return clearance(bodies, 0, a.body().outline(), a.pose()).distance;
 }
+
+double gap(const Simulation& simulation) { return gap(simulation.robots()[0], simulation.robots()[1]); }
 
 TEST(Robots, HearTheEchoOfEachOthersBodies) {
   RobotSetup setup = perfect("r1", {0.0, 0.0, 0.0});
@@ -114,9 +117,7 @@ TEST(Robots, NeverOverlapWhateverTheyDo) {
     drive(simulation, wanted, 500ms);
     for (std::size_t a = 0; a < 6; ++a)
       for (std::size_t b = 0; b < a; ++b) {
-        const Robot &one = simulation.robots()[a], &other = simulation.robots()[b];
-        const PlacedBody body("", other.body().outline(), other.pose());
-        ASSERT_GT(clearance(body, one.body().outline(), one.pose()).distance, 0.0) << "round " << round;
+        ASSERT_GT(gap(simulation.robots()[a], simulation.robots()[b]), 0.0) << "round " << round;
       }
   }
   for (const Robot& robot : simulation.robots()) contacts += robot.body().contacts();

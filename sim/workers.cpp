@@ -1,0 +1,59 @@
+#include "sim/workers.hpp"
+
+#include <algorithm>
+
+namespace kervan::sim {
+
+namespace {
+constexpr std::size_t worth_sharing = 16;  // waking somebody takes longer than doing less than this
+constexpr std::size_t portions = 16;       // for each thread, so that none ends much later than the others
+}  // namespace
+
+Workers::Workers(int threads) {
+  for (int i = 1; i < threads; ++i) others_.emplace_back([this] { serve(); });
+}
+
+Workers::~Workers() {
+  end_ = true;
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  for (std::thread& other : others_) other.join();
+}
+
+void Workers::share(std::size_t count, Call call, void* context) {
+  if (others_.empty() || count < worth_sharing) {
+    for (std::size_t i = 0; i < count; ++i) call(context, i);
+    return;
+  }
+  call_ = call;
+  context_ = context;
+  count_ = count;
+  portion_ = std::max<std::size_t>(1, count / (portions * (others_.size() + 1)));
+  next_.store(0, std::memory_order_relaxed);
+  at_work_.store(static_cast<std::uint32_t>(others_.size()), std::memory_order_relaxed);
+  round_.fetch_add(1, std::memory_order_release);
+  round_.notify_all();
+  take_part();
+  while (const std::uint32_t left = at_work_.load(std::memory_order_acquire))
+    at_work_.wait(left, std::memory_order_acquire);
+}
+
+void Workers::take_part() {
+  for (;;) {
+    const std::size_t first = next_.fetch_add(portion_, std::memory_order_relaxed);
+    if (first >= count_) return;
+    for (std::size_t i = first; i < std::min(first + portion_, count_); ++i) call_(context_, i);
+  }
+}
+
+void Workers::serve() {
+  for (std::uint32_t seen = 0;;) {
+    round_.wait(seen, std::memory_order_acquire);
+    seen = round_.load(std::memory_order_acquire);
+    if (end_) return;
+    take_part();
+    if (at_work_.fetch_sub(1, std::memory_order_acq_rel) == 1) at_work_.notify_one();
+  }
+}
+
+}  // namespace kervan::sim

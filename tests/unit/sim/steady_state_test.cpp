@@ -1,0 +1,59 @@
+// A step allocates nothing, whatever happens in it.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <new>
+
+#include "sim/simulation.hpp"
+#include "tests/unit/sim/p3dx.hpp"
+
+namespace {
+std::atomic<std::size_t> allocations{0};
+
+void* counted(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
+  throw std::bad_alloc();
+}
+}  // namespace
+
+// The whole program's; the simulator uses no others.
+void* operator new(std::size_t size) { return counted(size); }
+void* operator new[](std::size_t size) { return counted(size); }
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete[](void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace kervan::sim {
+namespace {
+
+TEST(SteadyState, AStepAllocatesNothing) {
+  std::vector<RobotSetup> setups;
+  for (int i = 0; i < 25; ++i) {
+    setups.push_back(perfect("r" + std::to_string(i), {0.8 * (i % 5), 0.8 * (i / 5), 0.5 * i}));
+    setups.back().model.laser = LaserMount{.pose = {}, .beams = 181, .field_of_view = pi, .max_range = 8.0};
+  }
+  const auto world = std::make_shared<const World>(Obstacles{
+      .segments = {{{-1.0, -1.0}, {5.0, -1.0}}, {{-1.0, -1.0}, {-1.0, 5.0}}}, .circles = {{{4.5, 4.5}, 0.3}}});
+  for (const int threads : {1, 2}) {
+    Simulation simulation(world, setups, 1, threads);
+    const auto run = [&](int steps) {
+      for (int i = 0; i < steps; ++i) {
+        for (std::size_t robot = 0; robot < setups.size(); ++robot) simulation.command(robot, {0.4, 0.1});
+        simulation.step(tick);
+      }
+    };
+    run(1);
+    const std::size_t before = allocations;
+    run(300);
+    EXPECT_EQ(allocations - before, 0u) << threads << " threads";
+    std::uint64_t contacts = 0;
+    for (const Robot& robot : simulation.robots()) contacts += robot.body().contacts();
+    EXPECT_GT(contacts, 10u) << "contacts were among the steps";
+  }
+}
+
+}  // namespace
+}  // namespace kervan::sim

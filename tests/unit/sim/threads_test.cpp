@@ -1,0 +1,141 @@
+// A step on several threads, with bodies sorted into cells, is the step that the rules describe: one robot after the
+// other, everybody asked.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+
+#include "sim/simulation.hpp"
+#include "sim/workers.hpp"
+#include "tests/unit/sim/p3dx.hpp"
+
+namespace kervan::sim {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr int columns = 7, rows = 6;
+
+/// Robots so close together that they meet again and again, in a pen with a pillar.
+std::vector<RobotSetup> crowd() {
+  std::vector<RobotSetup> setups;
+  for (int i = 0; i < columns * rows; ++i) {
+    RobotSetup setup = perfect("r" + std::to_string(i), {0.9 * (i % columns), 0.9 * (i / columns), 0.7 * i});
+    setup.sonar = {.rays = 3, .noise = 0.01, .drop_out = 0.01};
+    setup.model.laser = LaserMount{.pose = {0.1, 0.0, 0.0}, .beams = 31, .field_of_view = pi, .max_range = 4.0};
+    setup.odometry_error = 0.02;
+    setups.push_back(std::move(setup));
+  }
+  return setups;
+}
+
+std::shared_ptr<const World> pen() {
+  const double right = 0.9 * columns, top = 0.9 * rows;
+  return std::make_shared<const World>(Obstacles{.segments = {{{-1.5, -0.6}, {right, -0.6}},
+                                                              {{right, -0.6}, {right, top}},
+                                                              {{right, top}, {-1.5, top}},
+                                                              {{-1.5, top}, {-1.5, -0.6}}},
+                                                 .circles = {{{-1.0, 2.0}, 0.1}}});
+}
+
+Twist2 wish(std::size_t robot, int step) {
+  const RandomSource random(5, "wishes");
+  auto sequence = random.at(RandomUse::sonar, static_cast<std::uint16_t>(robot), static_cast<std::uint64_t>(step / 20));
+  return {sequence.uniform(-0.5, 1.0), sequence.uniform(-1.5, 1.5)};
+}
+
+void note(const Robot& robot, std::vector<double>& history) {
+  const Contact& contact = robot.body().last_contact();
+  history.insert(history.end(),
+                 {robot.pose().x, robot.pose().y, robot.pose().yaw, robot.speed().linear, robot.body().min_clearance(),
+                  static_cast<double>(robot.body().contacts()), robot.body().touching() ? 1.0 : 0.0, contact.point.x(),
+                  contact.point.y(), robot.odometry().pose.x});
+  history.push_back(contact.other.empty() ? -1.0 : std::stod(contact.other.substr(1)));
+  history.insert(history.end(), robot.sonar().ranges.begin(), robot.sonar().ranges.end());
+  history.insert(history.end(), robot.laser().ranges.begin(), robot.laser().ranges.end());
+}
+
+std::vector<double> history(Duration dt, int steps, int threads) {
+  Simulation simulation(pen(), crowd(), 1, threads);
+  std::vector<double> numbers;
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t i = 0; i < simulation.robots().size(); ++i) simulation.command(i, wish(i, step));
+    simulation.step(dt);
+    for (const Robot& robot : simulation.robots()) note(robot, numbers);
+  }
+  return numbers;
+}
+
+/// The rules, word by word.
+std::vector<double> history_by_the_rules(Duration dt, int steps) {
+  const auto world = pen();
+  std::vector<Robot> robots;
+  Bodies bodies;  // never sorted, so each is asked
+  for (const RobotSetup& setup : crowd()) {
+    robots.emplace_back(setup, 1, Surroundings(*world, bodies, bodies.size()));
+    bodies.add(setup.name, setup.model.outline, setup.start);
+  }
+  std::vector<std::size_t> order(robots.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  std::sort(order.begin(), order.end(), [&](auto a, auto b) { return robots[a].name() < robots[b].name(); });
+  for (std::size_t i = 0; i < robots.size(); ++i) robots[i].measure_first(Surroundings(*world, bodies, i), 0ms);
+
+  std::vector<double> numbers;
+  for (int step = 0; step < steps; ++step) {
+    const Duration now = step * dt;
+    for (std::size_t i = 0; i < robots.size(); ++i) robots[i].command(wish(i, step), now);
+    for (const std::size_t i : order) {
+      const auto contacts = robots[i].body().contacts();
+      robots[i].plan(now, dt);
+      robots[i].drive(Surroundings(*world, bodies, i));
+      bodies.move(i, robots[i].pose());
+      if (robots[i].body().contacts() == contacts) continue;
+      const Contact& contact = robots[i].body().last_contact();
+      for (Robot& other : robots)
+        if (other.name() == contact.other) other.touched_by(robots[i].name(), contact.point);
+    }
+    for (std::size_t i = 0; i < robots.size(); ++i) robots[i].measure(Surroundings(*world, bodies, i), now, now + dt);
+    for (const Robot& robot : robots) note(robot, numbers);
+  }
+  return numbers;
+}
+
+TEST(Threads, AStepIsWhatTheRulesSayOnAnyNumberOfThreads) {
+  for (const auto& [dt, steps] : {std::pair{Duration(10ms), 120}, {Duration(100ms), 40}}) {
+    const std::vector<double> expected = history_by_the_rules(dt, steps);
+    for (const int threads : {1, 2, 5}) {
+      const std::vector<double> found = history(dt, steps, threads);
+      ASSERT_EQ(found.size(), expected.size());
+      const auto different = std::mismatch(found.begin(), found.end(), expected.begin());
+      EXPECT_TRUE(different.first == found.end())
+          << threads << " threads, steps of " << seconds(dt) << " s: number " << different.first - found.begin();
+    }
+  }
+}
+
+TEST(Threads, TheCrowdOfTheseTestsDoesMeet) {
+  Simulation simulation(pen(), crowd(), 1);
+  std::uint64_t contacts = 0;
+  for (int step = 0; step < 100; ++step) {
+    for (std::size_t i = 0; i < simulation.robots().size(); ++i) simulation.command(i, wish(i, step));
+    simulation.step(tick);
+  }
+  for (const Robot& robot : simulation.robots())
+    if (!robot.body().last_contact().other.empty()) contacts += robot.body().contacts();
+  EXPECT_GT(contacts, 20u);
+}
+
+TEST(Workers, DoEveryPieceOfWorkOnce) {
+  for (const int threads : {1, 2, 4}) {
+    Workers workers(threads);
+    for (const std::size_t count : {0u, 1u, 17u, 1000u})
+      for (int round = 0; round < 20; ++round) {
+        std::vector<std::atomic<int>> done(count);
+        workers.for_each(count, [&](std::size_t i) { ++done[i]; });
+        EXPECT_TRUE(std::all_of(done.begin(), done.end(), [](const auto& times) { return times == 1; }));
+      }
+  }
+}
+
+}  // namespace
+}  // namespace kervan::sim
