@@ -31,8 +31,7 @@ NoRoom no_room(const std::string& robot, const char* stands, const Outline& outl
                const Surroundings& around) {
   const Room room = around.room(outline, pose);
   const std::string other = room.other ? *room.other : std::string();
-  return {robot, other,
-          "robot " + robot + " " + stands + " in or against " + (other.empty() ? "an obstacle" : "robot " + other)};
+  return {robot, other, "robot " + robot + " " + stands + " in or against " + (other.empty() ? "an obstacle" : other)};
 }
 
 Body placed(const RobotSetup& setup, const Surroundings& around) {

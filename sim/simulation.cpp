@@ -16,6 +16,8 @@ constexpr double doubt = 1e-9;  // m; more than the rounding of sums of distance
 Simulation::Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed,
                        int threads)
     : world_(std::move(world)), seed_(seed), workers_(std::make_unique<Workers>(threads)) {
+  for (const MovingObstacle& obstacle : world_->moving()) moving_.emplace_back(obstacle);
+  for (const MovingBody& body : moving_) bodies_.add(body.obstacle().name, body.obstacle().outline, body.pose());
   robots_.reserve(robots.size());
   for (RobotSetup& setup : robots) add(std::move(setup));
   bodies_.sort();
@@ -29,7 +31,10 @@ void Simulation::add(RobotSetup setup) {
                        [this](std::size_t robot, const std::string& name) { return robots_[robot].name() < name; });
   if (place != order_.end() && robots_[*place].name() == setup.name)
     throw std::invalid_argument("two robots have the name " + setup.name);
-  Robot robot(std::move(setup), seed_, around(bodies_.size()));
+  for (const MovingObstacle& moving : world_->moving())
+    if (moving.name == setup.name)
+      throw std::invalid_argument("robot " + setup.name + " has the name of a moving obstacle");
+  Robot robot(std::move(setup), seed_, around(robots_.size()));
   bodies_.add(robot.name(), robot.body().outline(), robot.pose());
   order_.insert(place, robots_.size());
   robots_.push_back(std::move(robot));
@@ -45,7 +50,7 @@ void Simulation::spawn(RobotSetup robot) {
 void Simulation::remove(std::string_view name) {
   const std::size_t robot = place_of(name);
   robots_.erase(robots_.begin() + static_cast<std::ptrdiff_t>(robot));
-  bodies_.remove(robot);
+  bodies_.remove(body_of(robot));
   std::erase(order_, robot);
   for (std::size_t& place : order_)
     if (place > robot) --place;
@@ -54,7 +59,7 @@ void Simulation::remove(std::string_view name) {
 void Simulation::teleport(std::string_view name, const Pose2& pose) {
   const std::size_t robot = place_of(name);
   robots_[robot].teleport(pose, around(robot));
-  bodies_.move(robot, pose);
+  bodies_.move(body_of(robot), pose);
 }
 
 std::optional<std::size_t> Simulation::find(std::string_view name) const {
@@ -72,10 +77,24 @@ std::size_t Simulation::place_of(std::string_view name) const {
 
 void Simulation::step(Duration dt) {
   assert(dt > Duration::zero());
+  move_obstacles(dt);
   drive(dt);
   bodies_.sort();
   workers_->for_each(robots_.size(), [this, dt](std::size_t i) { robots_[i].measure(around(i), now_, now_ + dt); });
   now_ += dt;
+}
+
+/// They mind the robots, and neither the walls nor each other: what they do among themselves is their script's matter.
+void Simulation::move_obstacles(Duration dt) {
+  if (moving_.empty()) return;
+  const World nothing({});
+  const Surroundings robots(nothing, bodies_, 0, moving_.size());
+  for (std::size_t i = 0; i < moving_.size(); ++i) {
+    const auto touch = moving_[i].move(dt, robots);
+    bodies_.move(i, moving_[i].pose());
+    if (!touch) continue;
+    if (const auto robot = find(touch->other)) robots_[*robot].touched_by(moving_[i].obstacle().name, touch->point);
+  }
 }
 
 /// The robots drive one after the other. Who stays so far from everybody that it makes no difference when it drives may
@@ -95,7 +114,7 @@ void Simulation::drive(Duration dt) {
   });
   for (const std::size_t i : order_) {
     if (!has_driven_[i]) drive_among_others(i);
-    bodies_.move(i, robots_[i].pose());
+    bodies_.move(body_of(i), robots_[i].pose());
   }
 }
 
@@ -105,8 +124,7 @@ void Simulation::drive_among_others(std::size_t robot) {
   driving.drive(around(robot));
   if (driving.body().contacts() == contacts) return;
   const Contact& contact = driving.body().last_contact();
-  if (contact.other.empty()) return;
-  robots_[place_of(contact.other)].touched_by(driving.name(), contact.point);
+  if (const auto other = find(contact.other)) robots_[*other].touched_by(driving.name(), contact.point);
 }
 
 }  // namespace kervan::sim

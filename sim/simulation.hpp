@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/moving_body.hpp"
 #include "sim/robot.hpp"
 #include "sim/workers.hpp"
 #include "sim/world.hpp"
@@ -14,14 +15,15 @@
 namespace kervan::sim {
 
 /// The same world, robots, seed, commands and steps give the same results to the last bit, on any number of threads,
-/// and those of one robot do not depend on where it stands in the list. Within a step the robots drive one after the
-/// other, in the order of their names; then all of them measure. They see each other's bodies and cannot drive through
-/// each other. To begin anew, build another one out of the same world and setups: nothing is left over from one to the
-/// next.
+/// and those of one robot do not depend on where it stands in the list. Within a step the moving obstacles go first,
+/// then the robots drive one after the other, in the order of their names; then all of them measure. They see each
+/// other's bodies and cannot drive through each other. To begin anew, build another one out of the same world and
+/// setups: nothing is left over from one to the next.
 class Simulation {
  public:
   /// The world may be shared with other simulations. Throws NoRoom or another std::invalid_argument, naming the robot,
-  /// if two robots have one name, two of them stand in each other, or one cannot be as its setup wants it. Steps use
+  /// if it has the name of another one or of a moving obstacle, stands in or against something, or cannot be as its
+  /// setup wants it. Steps use
   /// `threads` threads, at least 1: the caller's and others of its own.
   Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed, int threads = 1);
 
@@ -52,20 +54,27 @@ class Simulation {
 
   Duration now() const { return now_; }
   const World& world() const { return *world_; }
+
+  /// The world's moving obstacles, in their order, where they are now.
+  const std::vector<MovingBody>& moving() const { return moving_; }
+
   const std::vector<Robot>& robots() const { return robots_; }
 
  private:
-  Surroundings around(std::size_t robot) const { return {*world_, bodies_, robot}; }
+  std::size_t body_of(std::size_t robot) const { return moving_.size() + robot; }
+  Surroundings around(std::size_t robot) const { return {*world_, bodies_, body_of(robot)}; }
   void add(RobotSetup setup);
   std::size_t place_of(std::string_view name) const;
+  void move_obstacles(Duration dt);
   void drive(Duration dt);
   void drive_among_others(std::size_t robot);
 
   std::shared_ptr<const World> world_;
   std::uint64_t seed_;
   std::unique_ptr<Workers> workers_;
+  std::vector<MovingBody> moving_;
   std::vector<Robot> robots_;
-  Bodies bodies_;                   // of the robots, in their order
+  Bodies bodies_;                   // of the moving obstacles, then of the robots, in their order
   std::vector<std::size_t> order_;  // of the robots by their names
   Duration now_{0};
 

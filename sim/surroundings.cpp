@@ -91,7 +91,7 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   room.world = room.all.distance;
   if (!bodies_) return room;
   const auto consider = [&](std::size_t body) {
-    if (body == self_) return;
+    if (left_out(body)) return;
     const double radii = outline.circumradius() + bodies_->radius(body);
     if ((bodies_->center(body) - pose.position()).norm() - radii > room.all.distance + doubt) return;
     const Clearance found = clearance(*bodies_, body, outline, pose);
@@ -115,7 +115,7 @@ double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose
   if (!bodies_) return room;
   const Vector2 extent = Vector2::Constant(within + outline.circumradius() + bodies_->largest_radius() + doubt);
   bodies_->visit_box(pose.position() - extent, pose.position() + extent, [&](std::size_t body) {
-    if (body == self_) return;
+    if (left_out(body)) return;
     const double radii = outline.circumradius() + bodies_->radius(body);
     room = std::min(room, (bodies_->center(body) - pose.position()).norm() - radii);
   });
@@ -138,7 +138,7 @@ void Surroundings::cast(const Vector2& origin, std::span<const Vector2> directio
   const Vector2 extent = Vector2::Constant(bodies_->largest_radius() + doubt);
   const Bundle bundle(directions);
   bodies_->visit_box(low - extent, high + extent, [&](std::size_t body) {
-    if (body == self_) return;
+    if (left_out(body)) return;
     const Vector2 to_center = bodies_->center(body) - origin;
     const double radius = bodies_->radius(body);
     bundle.visit_towards(to_center, radius, [&](std::size_t i) {

@@ -23,7 +23,10 @@ class Surroundings {
   /// `bodies` may hold the body of the robot that asks, at the place `self`; it is left out. World and bodies must
   /// outlive the surroundings.
   Surroundings(const World& world, const Bodies& bodies, std::size_t self)
-      : world_(world), bodies_(bodies.size() > 1 || self != 0 ? &bodies : nullptr), self_(self) {}
+      : Surroundings(world, bodies, self, self + 1) {}
+  /// The bodies from `first` on are left out, up to the one before `last`.
+  Surroundings(const World& world, const Bodies& bodies, std::size_t first, std::size_t last)
+      : world_(world), bodies_(first > 0 || last < bodies.size() ? &bodies : nullptr), first_(first), last_(last) {}
   /// A world in which nothing moves.
   Surroundings(const World& world) : world_(world) {}  // NOLINT(google-explicit-constructor): it is nothing more
 
@@ -41,9 +44,11 @@ class Surroundings {
   void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
 
  private:
+  bool left_out(std::size_t body) const { return body >= first_ && body < last_; }
+
   const World& world_;
   const Bodies* bodies_ = nullptr;  // nullptr: there are no others
-  std::size_t self_ = 0;
+  std::size_t first_ = 0, last_ = 0;
 };
 
 /// How near a body at `pose` and one of `bodies` are; 0 when they touch or overlap. Points in map, `on_obstacle` on the

@@ -4,6 +4,7 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -11,18 +12,28 @@ namespace kervan::sim {
 
 namespace {
 
-Obstacles valid(Obstacles obstacles) {
-  for (const Segment& s : obstacles.segments)
+void require_valid(std::span<const Segment> segments, std::span<const Circle> circles, std::span<const Box> boxes) {
+  for (const Segment& s : segments)
     if (!s.a.allFinite() || !s.b.allFinite() || s.a == s.b)
       throw std::invalid_argument("a segment needs two different, finite ends");
-  for (const Circle& c : obstacles.circles)
+  for (const Circle& c : circles)
     if (!c.center.allFinite() || !std::isfinite(c.radius) || c.radius <= 0.0)
       throw std::invalid_argument("a circle needs a finite centre and a positive radius");
-  for (const Box& b : obstacles.boxes)
+  for (const Box& b : boxes)
     if (!b.pose.position().allFinite() || !std::isfinite(b.pose.yaw) || !b.size.allFinite() ||
         !(b.size.minCoeff() > 0.0))
       throw std::invalid_argument("a box needs a finite pose and a positive size");
-  for (const Bitmap& b : obstacles.bitmaps) require_valid(b);
+}
+
+Obstacles valid(Obstacles obstacles) {
+  require_valid(obstacles.segments, obstacles.circles, obstacles.boxes);
+  require_valid(obstacles.low.segments, obstacles.low.circles, obstacles.low.boxes);
+  for (const Bitmap& b : obstacles.bitmaps) sim::require_valid(b);
+  std::set<std::string> names;
+  for (const MovingObstacle& m : obstacles.moving) {
+    sim::require_valid(m);
+    if (!names.insert(m.name).second) throw std::invalid_argument("two moving obstacles have the name " + m.name);
+  }
   return obstacles;
 }
 
@@ -36,17 +47,26 @@ std::vector<Segment> with_box_edges(std::vector<Segment> segments, const std::ve
 
 }  // namespace
 
+Solids::Solids(Shapes shapes)
+    : boxes_(std::move(shapes.boxes)),
+      map_(with_box_edges(std::move(shapes.segments), boxes_), std::move(shapes.circles)) {}
+
+bool Solids::in_box(const Vector2& point) const {
+  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) { return contains(box, point); });
+}
+
 World::World(Obstacles obstacles, std::string name) : World(std::move(name), valid(std::move(obstacles))) {}
 
 World::World(std::string name, Obstacles valid_obstacles)
     : name_(std::move(name)),
-      shapes_(with_box_edges(std::move(valid_obstacles.segments), valid_obstacles.boxes),
-              std::move(valid_obstacles.circles)),
-      boxes_(std::move(valid_obstacles.boxes)),
-      bitmaps_(valid_obstacles.bitmaps.begin(), valid_obstacles.bitmaps.end()) {}
+      tall_(
+          {std::move(valid_obstacles.segments), std::move(valid_obstacles.circles), std::move(valid_obstacles.boxes)}),
+      low_(std::move(valid_obstacles.low)),
+      bitmaps_(valid_obstacles.bitmaps.begin(), valid_obstacles.bitmaps.end()),
+      moving_(std::move(valid_obstacles.moving)) {}
 
 bool World::solid_at(const Vector2& point) const {
-  return std::any_of(boxes_.begin(), boxes_.end(), [&](const Box& box) { return contains(box, point); }) ||
+  return tall_.in_box(point) || low_.in_box(point) ||
          std::any_of(bitmaps_.begin(), bitmaps_.end(), [&](const CellMap& map) { return map.solid_at(point); });
 }
 
@@ -79,13 +99,14 @@ void World::cast(const Vector2& origin, std::span<const Vector2> directions, dou
       }
     }
   }
-  for (std::size_t i = 0; i < directions.size(); ++i) shapes_.cast({origin, directions[i]}, range, hits[i]);
+  for (std::size_t i = 0; i < directions.size(); ++i) tall_.map().cast({origin, directions[i]}, range, hits[i]);
 }
 
 std::optional<NearestObstacle> World::nearest(const Vector2& point, double range) const {
   if (solid_at(point)) return NearestObstacle{0.0, point};
   NearestObstacle best;
-  shapes_.nearest(point, range, best);
+  tall_.map().nearest(point, range, best);
+  low_.map().nearest(point, range, best);
   for (const CellMap& map : bitmaps_) map.edges().nearest(point, range, best);
   if (best.distance > range || best.distance == infinity) return std::nullopt;
   return best;
@@ -95,7 +116,8 @@ Clearance World::clearance(const Outline& outline, const Pose2& pose) const {
   const PlacedOutline body(outline, pose);
   if (solid_at(body.center())) return {0.0, body.center(), body.center()};
   Clearance best;
-  shapes_.clearance(body, best);
+  tall_.map().clearance(body, best);
+  low_.map().clearance(body, best);
   for (const CellMap& map : bitmaps_) map.edges().clearance(body, best);
   if (best.distance == infinity) return best;
   best.on_obstacle = body.to_map(best.on_obstacle);

@@ -1,5 +1,5 @@
-/// The part of a world that never moves. Immutable, so that any number of robots and threads may ask it at once.
-/// Everything is in the frame `map`, in metres and radians.
+/// A world: what never moves in it, and the scripts of what does. Immutable, so that any number of robots and threads
+/// may ask it at once. Everything is in the frame `map`, in metres and radians.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,17 @@
 
 #include "sim/bitmap.hpp"
 #include "sim/cell_map.hpp"
+#include "sim/moving_obstacle.hpp"
 #include "sim/outline.hpp"
 #include "sim/shape_map.hpp"
 
 namespace kervan::sim {
+
+struct Shapes {
+  std::vector<Segment> segments = {};
+  std::vector<Circle> circles = {};
+  std::vector<Box> boxes = {};
+};
 
 /// What a world is made of, as its file gives it.
 struct Obstacles {
@@ -20,46 +27,73 @@ struct Obstacles {
   std::vector<Circle> circles = {};
   std::vector<Box> boxes = {};
   std::vector<Bitmap> bitmaps = {};
+  Shapes low = {};  ///< too low for sonars and lasers: only bodies meet them
+  std::vector<MovingObstacle> moving = {};
+};
+
+/// Shapes that never move, made ready for questions.
+class Solids {
+ public:
+  explicit Solids(Shapes shapes);
+
+  /// As they were given, in the same order.
+  std::span<const Segment> segments() const {
+    return map_.segments().first(map_.segments().size() - 4 * boxes_.size());
+  }
+  std::span<const Circle> circles() const { return map_.circles(); }
+  std::span<const Box> boxes() const { return boxes_; }
+
+  /// All of them: with the four edges of each box behind the segments.
+  const ShapeMap& map() const { return map_; }
+
+  /// True if the point lies in a box: a body may lie wholly in one and touch none of its edges.
+  bool in_box(const Vector2& point) const;
+
+ private:
+  std::vector<Box> boxes_;
+  ShapeMap map_;
 };
 
 class World {
  public:
   /// Throws std::invalid_argument if a number is not finite, a segment or a box has no extent, a radius is not
-  /// positive, or a bitmap does not have as many cells as it says. A world without obstacles is allowed.
+  /// positive, a bitmap does not have as many cells as it says, or a moving obstacle cannot be (require_valid) or has
+  /// the name of another one. A world without obstacles is allowed.
   explicit World(Obstacles obstacles, std::string name = {});
 
-  /// The first obstacle along the ray, no farther than `range`; nothing if there is none. Exact among shapes; as exact
-  /// as CellMap says among the cells of bitmaps.
+  /// The first obstacle along the ray, no farther than `range`; nothing if there is none. Low ones are passed over.
+  /// Exact among shapes; as exact as CellMap says among the cells of bitmaps.
   std::optional<RayHit> cast(const Ray& ray, double range = infinity) const;
 
   /// The same for many rays from one point, whose directions have length 1: hits[i] is where ray i ends.
   void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
 
-  /// The nearest obstacle to a point, no farther than `range`; nothing if there is none. Exact.
+  /// The nearest obstacle to a point, low or not, no farther than `range`; nothing if there is none. Exact.
   std::optional<NearestObstacle> nearest(const Vector2& point, double range = infinity) const;
 
-  /// How much room a body has at `pose`: 0 when it touches or overlaps an obstacle, infinity in a world without any.
-  /// Exact; a body that lies wholly inside a solid overlaps it.
+  /// How much room a body has at `pose`: 0 when it touches or overlaps an obstacle, low or not, infinity in a world
+  /// without any. Exact; a body that lies wholly inside a solid overlaps it.
   Clearance clearance(const Outline& outline, const Pose2& pose) const;
 
   const std::string& name() const { return name_; }
 
   /// What the world was made of, in the same order.
-  std::span<const Segment> segments() const {
-    return shapes_.segments().first(shapes_.segments().size() - 4 * boxes_.size());
-  }
-  std::span<const Circle> circles() const { return shapes_.circles(); }
-  std::span<const Box> boxes() const { return boxes_; }
+  std::span<const Segment> segments() const { return tall_.segments(); }
+  std::span<const Circle> circles() const { return tall_.circles(); }
+  std::span<const Box> boxes() const { return tall_.boxes(); }
   std::span<const CellMap> bitmaps() const { return bitmaps_; }
+  const Solids& low() const { return low_; }
+  std::span<const MovingObstacle> moving() const { return moving_; }
 
  private:
   World(std::string name, Obstacles valid_obstacles);
   bool solid_at(const Vector2& point) const;
 
   std::string name_;
-  ShapeMap shapes_;  // with the four edges of each box behind the segments
-  std::vector<Box> boxes_;
+  Solids tall_;
+  Solids low_;
   std::vector<CellMap> bitmaps_;
+  std::vector<MovingObstacle> moving_;
 };
 
 }  // namespace kervan::sim

@@ -22,15 +22,27 @@ double positive(const config::Node& node, std::string_view unit, double highest)
   return value;
 }
 
+namespace {
+
+void require_within(const config::Node& coordinate, double value, double limit) {
+  if (std::abs(value) > limit)
+    coordinate.fail(coordinate.shown() + " is out of range; allowed: -" + text_of(limit) + " .. " + text_of(limit) +
+                    " m");
+}
+
+}  // namespace
+
 Vector2 point_within(const config::Node& node, double limit) {
   const Vector2 point = node.as_point();
-  for (int i = 0; i < 2; ++i) {
-    const config::Node& coordinate = node.children[static_cast<std::size_t>(i)];
-    if (std::abs(point[i]) > limit)
-      coordinate.fail(coordinate.shown() + " is out of range; allowed: -" + text_of(limit) + " .. " + text_of(limit) +
-                      " m");
-  }
+  for (int i = 0; i < 2; ++i) require_within(node.children[static_cast<std::size_t>(i)], point[i], limit);
   return point;
+}
+
+Pose2 pose_within(const config::Node& node, double limit) {
+  const Pose2 pose = node.as_pose();
+  require_within(node.children[0], pose.x, limit);
+  require_within(node.children[1], pose.y, limit);
+  return pose;
 }
 
 void require_version_1(const config::Node& file, std::string_view key) {

@@ -21,6 +21,9 @@ double positive(const config::Node& node, std::string_view unit, double highest)
 /// A point of map, or ConfigError at the coordinate that is farther than `limit` from the origin.
 Vector2 point_within(const config::Node& node, double limit);
 
+/// The same for a pose.
+Pose2 pose_within(const config::Node& node, double limit);
+
 /// The file must say in which version of its format it is written, and 1 is the only one: `kervan_world: 1`.
 void require_version_1(const config::Node& file, std::string_view key);
 

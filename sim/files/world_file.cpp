@@ -1,5 +1,6 @@
 #include "sim/files/world_file.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
@@ -32,13 +33,17 @@ Circle circle(const config::Node& node) {
   return {point_within(node.required("center"), farthest), positive(node.required("radius"), "m", farthest)};
 }
 
+Vector2 extents(const config::Node& size) {
+  const auto& both = size.list_of(2, "two extents [along x m, along y m]");
+  return {positive(both[0], "m", farthest), positive(both[1], "m", farthest)};
+}
+
 /// The keys center, size and yaw of a box or bitmap.
 Box rectangle(const config::Node& node) {
   const Vector2 center = point_within(node.required("center"), farthest);
-  const auto& size = node.required("size").list_of(2, "two extents [along x m, along y m]");
+  const Vector2 size = extents(node.required("size"));
   const config::Node* yaw = node.optional("yaw");
-  return {{center.x(), center.y(), yaw ? yaw->as_quantity("rad") : 0.0},
-          {positive(size[0], "m", farthest), positive(size[1], "m", farthest)}};
+  return {{center.x(), center.y(), yaw ? yaw->as_quantity("rad") : 0.0}, size};
 }
 
 Box box(const config::Node& node) {
@@ -95,15 +100,66 @@ void add_map(const config::Node& node, const std::string& folder, Obstacles& obs
   }
 }
 
+/// The key `low`: shapes that only bodies meet.
+Shapes low_shapes(const config::Node& node) {
+  node.only_keys({"segments", "circles", "boxes"});
+  return {shapes(node, "segments", segment), shapes(node, "circles", circle), shapes(node, "boxes", box)};
+}
+
+Waypoint waypoint(const config::Node& node) {
+  node.only_keys({"at", "pose"});
+  const config::Node& at = node.required("at");
+  const Waypoint point{at.as_duration(), pose_within(node.required("pose"), farthest)};
+  if (point.at < point.at.zero()) at.fail(at.shown() + " is out of range; allowed: 0 s and later");
+  return point;
+}
+
+MovingObstacle moving(const config::Node& node) {
+  node.only_keys({"name", "radius", "size", "path", "repeat"});
+  const config::Node& name = node.required("name");
+  const config::Node *radius = node.optional("radius"), *size = node.optional("size");
+  if ((radius != nullptr) == (size != nullptr))
+    node.fail("a moving obstacle has either a 'radius' or a 'size', " +
+              std::string(radius ? "not both" : "neither is given"));
+  const config::Node* repeat = node.optional("repeat");
+  MovingObstacle obstacle{name.as_text(),
+                          radius ? disc_outline(positive(*radius, "m", farthest)) : rectangle_outline(extents(*size)),
+                          {},
+                          repeat != nullptr && repeat->as_bool()};
+  if (obstacle.name.empty()) name.fail("a moving obstacle needs a name");
+  const config::Node& path = node.required("path");
+  for (const config::Node& item : path.list()) {
+    const Waypoint point = waypoint(item);
+    if (!obstacle.path.empty() && point.at <= obstacle.path.back().at)
+      item.required("at").fail(item.required("at").shown() + " is not later than the waypoint before it");
+    obstacle.path.push_back(point);
+  }
+  if (obstacle.path.empty()) path.fail("a path needs at least one waypoint {at: 0 s, pose: [x m, y m, yaw deg]}");
+  if (obstacle.repeat && obstacle.path.size() < 2) path.fail("a path that repeats needs at least two waypoints");
+  if (obstacle.repeat && !same_place(obstacle.path.front().pose, obstacle.path.back().pose))
+    path.list().back().required("pose").fail("a path that repeats must end where it began");
+  return obstacle;
+}
+
 World world(const config::Node& file, const std::string& folder) {
-  file.only_keys({"kervan_world", "name", "segments", "circles", "boxes", "bitmaps", "maps"});
+  file.only_keys({"kervan_world", "name", "segments", "circles", "boxes", "bitmaps", "maps", "low", "moving"});
   require_version_1(file, "kervan_world");
   const std::string name = file.required("name").as_text();
-  Obstacles obstacles{shapes(file, "segments", segment), shapes(file, "circles", circle), shapes(file, "boxes", box)};
+  Obstacles obstacles{.segments = shapes(file, "segments", segment),
+                      .circles = shapes(file, "circles", circle),
+                      .boxes = shapes(file, "boxes", box)};
   if (const config::Node* list = file.optional("bitmaps"))
     for (const config::Node& item : list->list()) obstacles.bitmaps.push_back(bitmap(item, folder));
   if (const config::Node* list = file.optional("maps"))
     for (const config::Node& item : list->list()) add_map(item, folder, obstacles);
+  if (const config::Node* low = file.optional("low")) obstacles.low = low_shapes(*low);
+  if (const config::Node* list = file.optional("moving"))
+    for (const config::Node& item : list->list()) {
+      obstacles.moving.push_back(moving(item));
+      const auto same = [&](const MovingObstacle& other) { return other.name == obstacles.moving.back().name; };
+      if (std::find_if(obstacles.moving.begin(), obstacles.moving.end(), same) != obstacles.moving.end() - 1)
+        item.required("name").fail(item.required("name").shown() + " is the name of another moving obstacle");
+    }
   return World(std::move(obstacles), name);
 }
 

@@ -133,7 +133,7 @@ TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {
   expect_refused("run c.yaml",
                  (folder_ / "world.yaml").string() +
                      ":3:1: unknown key 'circlse'; did you mean 'circles'? allowed: kervan_world, name, segments, "
-                     "circles, boxes, bitmaps, maps");
+                     "circles, boxes, bitmaps, maps, low, moving");
 }
 
 TEST_F(Program, RefusesARobotThatStandsInAWall) {

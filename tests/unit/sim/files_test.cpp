@@ -41,16 +41,51 @@ TEST(WorldFile, BoxesMayBeTurned) {
   EXPECT_TRUE(world.segments().empty());
 }
 
+TEST(WorldFile, LowAndMovingObstaclesHaveTheirOwnPlaces) {
+  const World world = parse_world(
+      "kervan_world: 1\n"
+      "name: w\n"
+      "low:\n"
+      "  segments: [[[0 m, 0 m], [1 m, 0 m]]]\n"
+      "  circles: [{center: [3 m, 0 m], radius: 10 cm}]\n"
+      "  boxes: [{center: [5 m, 0 m], size: [1 m, 1 m]}]\n"
+      "moving:\n"
+      "  - {name: cart, radius: 0.3 m, path: [{at: 0 s, pose: [1 m, 2 m, 0 deg]}, {at: 2 s, pose: [3 m, 2 m, 0 "
+      "deg]}]}\n"
+      "  - name: door\n"
+      "    size: [80 cm, 4 cm]\n"
+      "    repeat: true\n"
+      "    path:\n"
+      "      - {at: 1 s, pose: [0 m, 0 m, 0 deg]}\n"
+      "      - {at: 3 s, pose: [0 m, 0 m, 90 deg]}\n"
+      "      - {at: 5 s, pose: [0 m, 0 m, 0 deg]}\n",
+      "w.yaml");
+  EXPECT_TRUE(world.segments().empty() && world.circles().empty() && world.boxes().empty());
+  EXPECT_EQ(world.low().segments().size(), 1u);
+  EXPECT_EQ(world.low().circles().size(), 1u);
+  EXPECT_EQ(world.low().boxes().size(), 1u);
+  ASSERT_EQ(world.moving().size(), 2u);
+  const MovingObstacle &cart = world.moving()[0], &door = world.moving()[1];
+  EXPECT_EQ(cart.name, "cart");
+  EXPECT_NEAR(cart.outline.circumradius(), 0.3, 1e-12);
+  EXPECT_FALSE(cart.repeat);
+  EXPECT_EQ(pose_at(cart, std::chrono::seconds(1)), (Pose2{2.0, 2.0, 0.0}));
+  EXPECT_NEAR(door.outline.circumradius(), std::hypot(0.4, 0.02), 1e-12);
+  EXPECT_TRUE(door.repeat);
+  EXPECT_NEAR(pose_at(door, std::chrono::seconds(2 + 4)).yaw, 0.25 * pi, 1e-12);
+}
+
 std::string world_refusal(const std::string& lines) {
   return refused([&] { parse_world("kervan_world: 1\nname: w\n" + lines, "w.yaml"); });
 }
 
 TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
   EXPECT_EQ(world_refusal("walls: []\n"),
-            "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes, bitmaps, maps");
+            "w.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, boxes, bitmaps, maps, "
+            "low, moving");
   EXPECT_EQ(world_refusal("circle: []\n"),
             "w.yaml:3:1: unknown key 'circle'; did you mean 'circles'? allowed: kervan_world, name, segments, circles, "
-            "boxes, bitmaps, maps");
+            "boxes, bitmaps, maps, low, moving");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m]}\n"),
             "w.yaml:4:5: circles[0]: the key 'radius' is missing");
   EXPECT_EQ(world_refusal("circles:\n  - {center: [1 m, 2 m], radius: -0.3 m}\n"),
@@ -81,6 +116,40 @@ TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
             "w.yaml:1:15: kervan_world: 2 is not a known version of this format; allowed: 1");
   EXPECT_EQ(refused([] { load_world("no/such/world.yaml"); }),
             "no/such/world.yaml: cannot read the file: No such file or directory");
+}
+
+TEST(WorldFile, MistakesInLowAndMovingObstaclesAreNamedAtTheirPlace) {
+  EXPECT_EQ(world_refusal("low:\n  bitmaps: []\n"),
+            "w.yaml:4:3: low: unknown key 'bitmaps'; allowed: segments, circles, boxes");
+  EXPECT_EQ(world_refusal("low:\n  circles: [{center: [1 m, 2 m], radius: 0 m}]\n"),
+            "w.yaml:4:42: radius: 0 m is out of range; allowed: above 0, at most 1000000 m");
+  const auto moving = [](const std::string& entry) { return world_refusal("moving:\n  - {" + entry + "}\n"); };
+  const std::string path = "path: [{at: 0 s, pose: [1 m, 2 m, 0 deg]}]";
+  EXPECT_EQ(moving("name: c, radius: 1 m"), "w.yaml:4:5: moving[0]: the key 'path' is missing");
+  EXPECT_EQ(moving("radius: 1 m, " + path), "w.yaml:4:5: moving[0]: the key 'name' is missing");
+  EXPECT_EQ(moving("name: '', radius: 1 m, " + path), "w.yaml:4:12: name: a moving obstacle needs a name");
+  EXPECT_EQ(moving("name: c, " + path),
+            "w.yaml:4:5: moving[0]: a moving obstacle has either a 'radius' or a 'size', neither is given");
+  EXPECT_EQ(moving("name: c, radius: 1 m, size: [1 m, 1 m], " + path),
+            "w.yaml:4:5: moving[0]: a moving obstacle has either a 'radius' or a 'size', not both");
+  EXPECT_EQ(moving("name: c, radius: 1 m, path: []"),
+            "w.yaml:4:34: path: a path needs at least one waypoint {at: 0 s, pose: [x m, y m, yaw deg]}");
+  EXPECT_EQ(moving("name: c, radius: 1 m, path: [{at: -1 s, pose: [1 m, 2 m, 0 deg]}]"),
+            "w.yaml:4:40: at: -1 s is out of range; allowed: 0 s and later");
+  EXPECT_EQ(moving("name: c, radius: 1 m, path: [{at: 0 s, pose: [1 m, 2e6 m, 0 deg]}]"),
+            "w.yaml:4:57: pose[1]: 2e6 m is out of range; allowed: -1000000 .. 1000000 m");
+  EXPECT_EQ(
+      moving("name: c, radius: 1 m, path: [{at: 3 s, pose: [1 m, 2 m, 0 deg]}, {at: 3 s, pose: [1 m, 2 m, 0 deg]}]"),
+      "w.yaml:4:76: at: 3 s is not later than the waypoint before it");
+  EXPECT_EQ(moving("name: c, radius: 1 m, repeat: true, " + path),
+            "w.yaml:4:48: path: a path that repeats needs at least two waypoints");
+  EXPECT_EQ(
+      moving("name: c, radius: 1 m, repeat: true, path: [{at: 0 s, pose: [1 m, 2 m, 0 deg]}, {at: 3 s, pose: [1 m, 2 "
+             "m, 9 deg]}]"),
+      "w.yaml:4:103: pose: a path that repeats must end where it began");
+  EXPECT_EQ(
+      world_refusal("moving:\n  - {name: c, radius: 1 m, " + path + "}\n  - {name: c, radius: 1 m, " + path + "}\n"),
+      "w.yaml:5:12: name: c is the name of another moving obstacle");
 }
 
 TEST(RobotFile, TheP3DxIsThatOfItsTable) {

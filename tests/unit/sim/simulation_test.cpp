@@ -132,7 +132,7 @@ TEST(Simulation, SaysWhichRobotCannotBe) {
   EXPECT_EQ(refusal({perfect("r1", {}), perfect("r1", {3.0, 3.0, 0.0})}), "two robots have the name r1");
   EXPECT_EQ(refusal({perfect("r1", {8.2, 6.5, 0.0})}), "robot r1 starts in or against an obstacle");
   EXPECT_EQ(refusal({perfect("r1", {1.0, 1.0, 0.0}), perfect("r2", {1.3, 1.0, 0.0})}),
-            "robot r2 starts in or against robot r1");
+            "robot r2 starts in or against r1");
   RobotSetup setup = perfect("r2", {});
   setup.sonar_period = 0ms;
   EXPECT_EQ(refusal({setup}), "robot r2: the periods of its sensors must be positive");

@@ -85,10 +85,7 @@ TEST(Spawn, RefusesWhatCannotBeAndChangesNothing) {
   Simulation simulation(room(), {perfect("r1", {})}, 1);
   EXPECT_EQ(refusal([&] { simulation.spawn(perfect("r1", {2.0, 0.0, 0.0})); }), "two robots have the name r1");
   EXPECT_EQ(refusal([&] { simulation.spawn(perfect("", {2.0, 0.0, 0.0})); }), "a robot needs a name");
-  EXPECT_EQ(refusal([&] {
-              simulation.spawn(perfect("r2", {0.3, 0.0, 0.0}));
-            }),
-            "robot r2 starts in or against robot r1");
+  EXPECT_EQ(refusal([&] { simulation.spawn(perfect("r2", {0.3, 0.0, 0.0})); }), "robot r2 starts in or against r1");
   EXPECT_EQ(refusal([&] {
               simulation.spawn(perfect("r2", {9.1, 0.0, 0.0}));
             }),
@@ -197,10 +194,7 @@ TEST(Teleport, EndsATouch) {
 
 TEST(Teleport, RefusesAPlaceWithoutRoomAndChangesNothing) {
   Simulation simulation(room(), {perfect("r1", {}), perfect("r2", {2.0, 0.0, 0.0})}, 1);
-  EXPECT_EQ(refusal([&] {
-              simulation.teleport("r2", {0.3, 0.0, 0.0});
-            }),
-            "robot r2 would stand in or against robot r1");
+  EXPECT_EQ(refusal([&] { simulation.teleport("r2", {0.3, 0.0, 0.0}); }), "robot r2 would stand in or against r1");
   EXPECT_EQ(refusal([&] {
               simulation.teleport("r2", {0.0, 5.0, 0.0});
             }),
