@@ -19,6 +19,8 @@
 namespace kervan::sim {
 namespace {
 
+constexpr Duration drawing_period = std::chrono::milliseconds(100);  // of what moves
+
 /// Simulates robots in a world (simulation.hpp). The first tick publishes what the sensors see at the start; each later
 /// one moves the robots on to the present.
 class SimulatorComponent final : public Component {
@@ -29,6 +31,7 @@ class SimulatorComponent final : public Component {
   Output<tf2_msgs::msg::TFMessage> tf_{this, "/tf", qos::event, "odom to base_link, and map to odom if asked for."};
   Output<kervan_msgs::msg::Outline> outline_{this, "outline", qos::latched,
                                              "The true shape of the world, for drawing."};
+  std::optional<Output<kervan_msgs::msg::Outline>> moving_ = moving();
   Timer tick_{this, params_.step, &SimulatorComponent::on_tick};
   std::optional<Time> start_;  // of the simulated time: the first tick
 
@@ -57,6 +60,14 @@ class SimulatorComponent final : public Component {
     for (const auto& [name, robot] : params_.robots)
       ports.emplace_back(this, name, simulated.empty() || simulated[ports.size()].setup().model.laser.has_value());
     return ports;
+  }
+
+  std::optional<Output<kervan_msgs::msg::Outline>> moving() {
+    // Without a world there are only declarations: then this is among them.
+    if (!params_.map.path.empty() && simulation_.moving().empty()) return std::nullopt;
+    return std::optional<Output<kervan_msgs::msg::Outline>>(
+        std::in_place, this, "moving", qos::state,
+        "Where the moving obstacles are, if the world has any, for drawing.");
   }
 
   void on_activate(Time now) override { outline_.publish(outline_message(simulation_.world(), now)); }
@@ -90,6 +101,11 @@ class SimulatorComponent final : public Component {
                    robot.body().last_contact().point.x(), robot.body().last_contact().point.y(), ports_[i].contacts());
     }
     if (!frames->transforms.empty()) tf_.publish(std::move(frames));
+    if (moving_ && simulation_.now() % drawing_period == Duration::zero()) {
+      auto outline = moving_->loan();
+      set_outlines(simulation_.moving(), now, *outline);
+      moving_->publish(std::move(outline));
+    }
   }
 
   void report_refusals() {
