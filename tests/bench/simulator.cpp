@@ -1,5 +1,6 @@
 /// How fast the simulator is: robots that wander through a cave with sonars, lasers or both, from one of them to a
 /// thousand; how the cost grows with their number; what a second thread brings; what publishing costs.
+#include <malloc.h>
 #include <time.h>
 
 #include <algorithm>
@@ -16,8 +17,6 @@
 #include <vector>
 
 #include "framework/test/harness.hpp"
-#include "nav_msgs/msg/Odometry.hpp"
-#include "sensor_msgs/msg/LaserScan.hpp"
 #include "sim/files/robot_file.hpp"
 #include "sim/files/world_file.hpp"
 #include "sim/simulation.hpp"
@@ -241,6 +240,39 @@ bool bench_threads(bool smoke) {
   return equal;
 }
 
+double heap_bytes() {
+  const struct mallinfo2 info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+void bench_memory() {
+  say("\n## Memory\n\n| | bytes |\n|---|---|\n");
+  double before = heap_bytes();
+  const sim::Bitmap bitmap = bench::cave(64.0);
+  const double picture = heap_bytes() - before;
+  before = heap_bytes();
+  const auto world = std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {bitmap}});
+  say("| a cell of the cave, its share of the edges included (the picture itself had %.1f) | %.2f |\n",
+      picture / (bitmap.columns * bitmap.rows), (heap_bytes() - before) / (bitmap.columns * bitmap.rows));
+  for (const Sensors sensors : all_sensors)
+    for (const int rays : {1, 32}) {
+      if (sensors == Sensors::laser && rays > 1) continue;
+      constexpr std::size_t count = 200;
+      std::vector<sim::RobotSetup> setups;
+      for (std::size_t i = 0; i < count; ++i) {
+        setups.push_back(setup(i, {static_cast<double>(i), -10.0, 0.0}, sensors));
+        setups.back().sonar.rays = rays;
+      }
+      before = heap_bytes();
+      const Simulation simulation(world, setups, 1);
+      say("| a robot, %s%s | %.0f |\n", text(sensors),
+          sensors == Sensors::laser ? ""
+          : rays == 1               ? ", one ray"
+                                    : ", 32 rays",
+          (heap_bytes() - before) / static_cast<double>(count));
+    }
+}
+
 /// The component in logical time with a reader on every port, beside the library alone.
 void bench_component(bool smoke) {
   constexpr int robots = 10;
@@ -290,6 +322,7 @@ int main(int argc, char** argv) {
   bench_growth(smoke);
   const bool equal = bench_threads(smoke);
   bench_component(smoke);
+  bench_memory();
   if (!equal) say("\nFAILED: two threads gave other results than one\n");
   return bench::end(!equal);
 }
