@@ -100,6 +100,15 @@ TEST(Spawn, RefusesWhatCannotBeAndChangesNothing) {
   simulation.step(tick);
 }
 
+TEST(Spawn, TenThousandRobotsInACupboardAreRefusedAtTheFirstThatDoesNotFit) {
+  const auto cupboard = std::make_shared<const World>(Obstacles{
+      .segments = {
+          {{0.0, 0.0}, {2.0, 0.0}}, {{2.0, 0.0}, {2.0, 1.0}}, {{2.0, 1.0}, {0.0, 1.0}}, {{0.0, 1.0}, {0.0, 0.0}}}});
+  std::vector<RobotSetup> robots;
+  for (int i = 0; i < 10000; ++i) robots.push_back(perfect("r" + std::to_string(i), {0.4 + 0.6 * (i % 3), 0.5, 0.0}));
+  EXPECT_EQ(refusal([&] { Simulation(cupboard, robots, 1); }), "robot r3 starts in or against r0");
+}
+
 TEST(Remove, TheOthersGoOnAsIfItHadBeenTheirsAloneOrBefore) {
   // r3 is out of everybody's sight; where it stands in the list before it goes must not matter.
   const RobotSetup r1 = noisy("r1", {0.0, 0.0, 0.6}), r2 = noisy("r2", {1.5, 0.0, 2.0}),
