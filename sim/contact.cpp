@@ -109,6 +109,7 @@ void Body::look(const Surroundings& around) {
 }
 
 void Body::touched_by(const std::string& other, const Vector2& point) {
+  clear_ = 0.0;  // whatever it was when this one looked last
   if (touching_) return;
   touching_ = true;
   ++contacts_;

@@ -6,9 +6,9 @@ namespace kervan::sim {
 
 namespace {
 
-using kervan_msgs::msg::Outline;
+using Drawing = kervan_msgs::msg::Outline;
 
-void draw(std::span<const Segment> segments, Outline& outline) {
+void draw(std::span<const Segment> segments, Drawing& outline) {
   for (const Segment& s : segments) {
     auto& drawn = outline.segments.emplace_back();
     drawn.x1 = s.a.x();
@@ -27,7 +27,7 @@ void draw(std::span<const Vector2> corners, kervan_msgs::msg::OutlinePolygon& po
   }
 }
 
-void draw(std::span<const Circle> circles, std::span<const Box> boxes, Outline& outline) {
+void draw(std::span<const Circle> circles, std::span<const Box> boxes, Drawing& outline) {
   for (const Circle& c : circles) {
     auto& drawn = outline.circles.emplace_back();
     drawn.x = c.center.x();
@@ -39,8 +39,8 @@ void draw(std::span<const Circle> circles, std::span<const Box> boxes, Outline& 
 
 }  // namespace
 
-Outline outline_message(const World& world, Time stamp) {
-  Outline outline;
+Drawing outline_message(const World& world, Time stamp) {
+  Drawing outline;
   geometry::set_header(outline.header, stamp, "map");
   draw(world.segments(), outline);
   draw(world.low().segments(), outline);
@@ -50,7 +50,7 @@ Outline outline_message(const World& world, Time stamp) {
   return outline;
 }
 
-void set_outlines(std::span<const MovingBody> bodies, Time stamp, Outline& outline) {
+void set_outlines(std::span<const MovingBody> bodies, Time stamp, Drawing& outline) {
   geometry::set_header(outline.header, stamp, "map");
   outline.polygons.resize(bodies.size());
   for (std::size_t i = 0; i < bodies.size(); ++i) {

@@ -120,7 +120,7 @@ TEST(WorldFile, EveryMistakeIsNamedAtItsPlace) {
 
 TEST(WorldFile, MistakesInLowAndMovingObstaclesAreNamedAtTheirPlace) {
   EXPECT_EQ(world_refusal("low:\n  bitmaps: []\n"),
-            "w.yaml:4:3: low: unknown key 'bitmaps'; allowed: segments, circles, boxes");
+            "w.yaml:4:3: unknown key 'bitmaps'; allowed: segments, circles, boxes");
   EXPECT_EQ(world_refusal("low:\n  circles: [{center: [1 m, 2 m], radius: 0 m}]\n"),
             "w.yaml:4:42: radius: 0 m is out of range; allowed: above 0, at most 1000000 m");
   const auto moving = [](const std::string& entry) { return world_refusal("moving:\n  - {" + entry + "}\n"); };
@@ -146,7 +146,7 @@ TEST(WorldFile, MistakesInLowAndMovingObstaclesAreNamedAtTheirPlace) {
   EXPECT_EQ(
       moving("name: c, radius: 1 m, repeat: true, path: [{at: 0 s, pose: [1 m, 2 m, 0 deg]}, {at: 3 s, pose: [1 m, 2 "
              "m, 9 deg]}]"),
-      "w.yaml:4:103: pose: a path that repeats must end where it began");
+      "w.yaml:4:101: pose: a path that repeats must end where it began");
   EXPECT_EQ(
       world_refusal("moving:\n  - {name: c, radius: 1 m, " + path + "}\n  - {name: c, radius: 1 m, " + path + "}\n"),
       "w.yaml:5:12: name: c is the name of another moving obstacle");

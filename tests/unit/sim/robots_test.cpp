@@ -88,6 +88,15 @@ TEST(Robots, OneThatDrivesIntoAnotherIsStoppedAndBothAreTouched) {
   EXPECT_EQ(r2.body().contacts(), 2u);
 }
 
+TEST(Robots, WhoDriveIntoEachOtherTouchOnce) {
+  Simulation simulation(nothing(), {perfect("r1", {0.0, 0.0, 0.0}), perfect("r2", {2.0, 0.0, pi})}, 1);
+  drive(simulation, {{0.5, 0.0}, {0.5, 0.0}}, 8s);
+  for (const Robot& robot : simulation.robots()) {
+    EXPECT_TRUE(robot.body().touching());
+    EXPECT_EQ(robot.body().contacts(), 1u) << robot.name();
+  }
+}
+
 TEST(Robots, TheOneThatWasHitDrivesAwayFreely) {
   Simulation simulation(nothing(), {perfect("r1", {0.0, 0.0, 0.0}), perfect("r2", {0.7, 0.0, 0.0})}, 1);
   drive(simulation, {{0.5, 0.0}}, 3s);

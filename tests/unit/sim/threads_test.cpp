@@ -14,23 +14,25 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr int columns = 7, rows = 6;
+constexpr int columns = 6, rows = 5;
+constexpr double spacing = 0.8;
 
 /// Robots so close together that they meet again and again, in a pen with a pillar.
 std::vector<RobotSetup> crowd() {
   std::vector<RobotSetup> setups;
   for (int i = 0; i < columns * rows; ++i) {
-    RobotSetup setup = perfect("r" + std::to_string(i), {0.9 * (i % columns), 0.9 * (i / columns), 0.7 * i});
+    RobotSetup setup = perfect("r" + std::to_string(i), {spacing * (i % columns), spacing * (i / columns), 0.7 * i});
     setup.sonar = {.rays = 3, .noise = 0.01, .drop_out = 0.01};
     setup.model.laser = LaserMount{.pose = {0.1, 0.0, 0.0}, .beams = 31, .field_of_view = pi, .max_range = 4.0};
     setup.odometry_error = 0.02;
+    setup.model.drive.acceleration = 2.0;
     setups.push_back(std::move(setup));
   }
   return setups;
 }
 
 std::shared_ptr<const World> pen() {
-  const double right = 0.9 * columns, top = 0.9 * rows;
+  const double right = spacing * columns, top = spacing * rows;
   return std::make_shared<const World>(Obstacles{.segments = {{{-1.5, -0.6}, {right, -0.6}},
                                                               {{right, -0.6}, {right, top}},
                                                               {{right, top}, {-1.5, top}},
@@ -40,7 +42,7 @@ std::shared_ptr<const World> pen() {
 
 Twist2 wish(std::size_t robot, int step) {
   const RandomSource random(5, "wishes");
-  auto sequence = random.at(RandomUse::sonar, static_cast<std::uint16_t>(robot), static_cast<std::uint64_t>(step / 20));
+  auto sequence = random.at(RandomUse::sonar, static_cast<std::uint16_t>(robot), static_cast<std::uint64_t>(step / 7));
   return {sequence.uniform(-0.5, 1.0), sequence.uniform(-1.5, 1.5)};
 }
 
@@ -101,7 +103,7 @@ std::vector<double> history_by_the_rules(Duration dt, int steps) {
 }
 
 TEST(Threads, AStepIsWhatTheRulesSayOnAnyNumberOfThreads) {
-  for (const auto& [dt, steps] : {std::pair{Duration(10ms), 120}, {Duration(100ms), 40}}) {
+  for (const auto& [dt, steps] : {std::pair{Duration(10ms), 80}, {Duration(100ms), 30}}) {
     const std::vector<double> expected = history_by_the_rules(dt, steps);
     for (const int threads : {1, 2, 5}) {
       const std::vector<double> found = history(dt, steps, threads);
@@ -115,14 +117,13 @@ TEST(Threads, AStepIsWhatTheRulesSayOnAnyNumberOfThreads) {
 
 TEST(Threads, TheCrowdOfTheseTestsDoesMeet) {
   Simulation simulation(pen(), crowd(), 1);
-  std::uint64_t contacts = 0;
-  for (int step = 0; step < 100; ++step) {
+  std::size_t others = 0;
+  for (int step = 0; step < 30; ++step) {
     for (std::size_t i = 0; i < simulation.robots().size(); ++i) simulation.command(i, wish(i, step));
-    simulation.step(tick);
+    simulation.step(100ms);
   }
-  for (const Robot& robot : simulation.robots())
-    if (!robot.body().last_contact().other.empty()) contacts += robot.body().contacts();
-  EXPECT_GT(contacts, 20u);
+  for (const Robot& robot : simulation.robots()) others += robot.body().last_contact().other.size() > 0 ? 1 : 0;
+  EXPECT_GT(others, simulation.robots().size() / 3);
 }
 
 TEST(Workers, DoEveryPieceOfWorkOnce) {
