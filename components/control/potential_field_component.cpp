@@ -1,4 +1,5 @@
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -80,9 +81,9 @@ class PotentialFieldComponent final : public Component {
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command, "Speed wanted of base_link."};
   Output<kervan_msgs::msg::ForceField> force_{this, "force", qos::sensor, "The forces on the robot, for looking at."};
   Timer tick_{this, params_.period, &PotentialFieldComponent::on_tick};
-  std::vector<SonarEcho> echoes_;
-  std::optional<geometry::Vector2> obstacle_;  // nearest, in the frame of the odometry
-  bool located_ = false;                       // the last sonar round came while the robot knew where it was
+  std::vector<std::optional<geometry::Vector2>> heard_;  // by each sonar at last, in the frame of the odometry
+  std::optional<geometry::Vector2> obstacle_;            // the nearest of them
+  bool located_ = false;                                 // the last sonar round came while the robot knew where it was
   bool arrived_ = false;
   Time activated_{};
 
@@ -90,17 +91,31 @@ class PotentialFieldComponent final : public Component {
 
   void on_waypoint(const geometry_msgs::msg::PoseStamped&, Time) { arrived_ = false; }
 
-  /// Keeps the obstacle where it was heard: by the next tick the robot will have moved on.
+  /// Keeps the echoes where they were heard: by the next tick the robot will have moved on, and of sonars that fire in
+  /// turn most have none in this round.
   void on_sonar(const kervan_msgs::msg::SonarArray& sonar, Time) {
-    echoes_.clear();
-    for (const auto& reading : sonar.readings)
-      echoes_.push_back(
-          {{static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
-           static_cast<double>(reading.range)});
-    obstacle_ = nearest_echo(echoes_, static_cast<double>(sonar.max_range));
     const auto* odometry = odom_.latest();
     located_ = odometry != nullptr;
-    if (located_ && obstacle_) obstacle_ = geometry::pose_of(odometry->pose.pose) * *obstacle_;
+    obstacle_.reset();
+    if (!located_) return heard_.clear();
+    const geometry::Pose2 robot = geometry::pose_of(odometry->pose.pose);
+    heard_.resize(sonar.readings.size());
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < heard_.size(); ++i) {
+      const auto& reading = sonar.readings[i];
+      double distance = heard_[i] ? (*heard_[i] - robot.position()).norm() : nearest;
+      if (!std::isnan(reading.range)) {
+        const SonarEcho echo{
+            {static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
+            static_cast<double>(reading.range)};
+        const auto point = nearest_echo({&echo, 1}, static_cast<double>(sonar.max_range));
+        heard_[i] = point ? std::optional(robot * *point) : std::nullopt;
+        distance = point ? point->norm() : nearest;
+      }
+      if (!(distance < nearest)) continue;
+      nearest = distance;
+      obstacle_ = heard_[i];
+    }
   }
 
   void on_tick(Time now) {

@@ -100,6 +100,28 @@ TEST(PotentialFieldComponent, StandsAndSaysWhichInputIsMissing) {
   EXPECT_EQ(drive.harness.state(), ComponentState::active);
 }
 
+TEST(PotentialFieldComponent, ASonarThatDidNotFireCountsWithWhatItHeardLast) {
+  // In turn, one says that 0.5 m ahead something stands, and the other hears nothing to the side.
+  const auto hear = [](Drive& drive, double x, double ahead, double aside) {
+    kervan_msgs::msg::SonarArray sonar = sonar_ahead(ahead);
+    sonar.readings.resize(2);
+    sonar.readings[1].yaw = 1.5F;
+    sonar.readings[1].range = static_cast<float>(aside);
+    drive.harness.feed("odom", odometry_at({x, 0.0, 0.0}));
+    drive.harness.feed("sonar", sonar);
+    drive.harness.advance(100ms);
+    return drive.harness.latest<kervan_msgs::msg::ForceField>("force")->repulsion.x;
+  };
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  Drive together, in_turn;
+  for (Drive* drive : {&together, &in_turn}) drive->harness.feed("waypoint", pose_at(9.0, 0.0));
+  EXPECT_EQ(hear(in_turn, 0.0, 0.5, nan), hear(together, 0.0, 0.5, no_echo));
+  EXPECT_LT(hear(in_turn, 0.0, nan, no_echo), 0.0) << "it still stands there";
+  // 0.1 m on it is as much nearer, though nobody has heard it again.
+  EXPECT_NEAR(hear(in_turn, 0.1, nan, no_echo), hear(together, 0.1, 0.4, no_echo), 1e-5);
+  EXPECT_EQ(hear(in_turn, 0.1, no_echo, nan), 0.0) << "now it has gone";
+}
+
 TEST(PotentialFieldComponent, StandsWhenTheSonarStops) {
   Drive drive;
   drive.harness.feed("waypoint", pose_at(9.0, 0.0));
