@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace kervan::sim {
 
@@ -13,7 +14,8 @@ constexpr double longest_move = 0.01;  // m; far less than any body is wide, so 
 constexpr double doubt = 1e-9;         // m; more than the rounding of sums of distances
 }  // namespace
 
-Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around) : outline_(outline), pose_(start) {
+Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around, bool turns)
+    : outline_(outline), turns_(turns), yaw_(start.yaw), pose_(start) {
   if (!try_pose(start, around)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
 }
 
@@ -24,7 +26,7 @@ double Body::length(const Motion& motion) const {
 }
 
 bool Body::try_pose(const Pose2& pose, const Surroundings& around) {
-  const Room room = around.room(outline_, pose);
+  const Room room = around.room(outline_, hull(pose));
   if (!(room.all.distance > skin)) return false;
   pose_ = pose;
   room_ = room.world;
@@ -38,7 +40,7 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
   if (total == 0.0) return {};
 
   // Far from everything nothing needs to be looked at: neither can the body touch, nor come nearer than it ever was.
-  const double room = std::min(room_, around.room_among_bodies(outline_, pose_, heeds() + total + doubt));
+  const double room = this->room(around, heeds() + total + doubt);
   if (!touching_ && room - total > min_clearance_) {
     pose_ = advance(pose_, wanted);
     room_ -= total;
@@ -87,21 +89,25 @@ double Body::drive_up_to_obstacle(const Motion& motion, const Surroundings& arou
 }
 
 void Body::begin_contact(const Surroundings& around) {
-  const Room room = around.room(outline_, pose_);
+  const Room room = around.room(outline_, hull());
   touching_ = true;
   ++contacts_;
   last_ = {room.all.on_obstacle, pose_, room.other ? *room.other : std::string()};
 }
 
 bool Body::put(const Pose2& pose, const Surroundings& around) {
-  if (!try_pose(pose, around)) return false;
+  const double yaw = std::exchange(yaw_, pose.yaw);
+  if (!try_pose(pose, around)) {
+    yaw_ = yaw;
+    return false;
+  }
   touching_ = false;
   return true;
 }
 
 void Body::look(const Surroundings& around) {
-  if (!touching_ && !(around.room_among_bodies(outline_, pose_, min_clearance_) < min_clearance_)) return;
-  const Room room = around.room(outline_, pose_);
+  if (!touching_ && !(around.room_among_bodies(outline_, hull(), min_clearance_) < min_clearance_)) return;
+  const Room room = around.room(outline_, hull());
   room_ = room.world;
   clear_ = room.all.distance;
   min_clearance_ = std::min(min_clearance_, clear_);

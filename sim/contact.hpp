@@ -1,6 +1,7 @@
 /// A solid body among solid obstacles and other bodies.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -28,15 +29,17 @@ struct Moved {
 /// Bodies do not push each other: one that drives into another is stopped as by a wall.
 class Body {
  public:
-  /// Throws std::invalid_argument if there is no room for the body at `start`.
-  Body(const Outline& outline, const Pose2& start, const Surroundings& around);
+  /// Throws std::invalid_argument if there is no room for the body at `start`. A body that does not turn, as that of a
+  /// synchro drive, keeps its orientation while its pose, which is that of base_link, turns.
+  Body(const Outline& outline, const Pose2& start, const Surroundings& around, bool turns = true);
 
   /// Moves along the arc as far as the obstacles allow. On contact the translation stops and the body only turns on; if
   /// an obstacle stops the turning but not the translation, as it does when the tail touches a wall, it drives straight
   /// on.
   Moved move(const Motion& wanted, const Surroundings& around);
 
-  /// Lifts the body and puts it down at `pose`, touching nothing. False, and nothing changes, if there is no room.
+  /// Lifts the body and puts it down at `pose`, as it stood at the start, touching nothing. False, and nothing changes,
+  /// if there is no room.
   bool put(const Pose2& pose, const Surroundings& around);
 
   /// Others may have come nearer or gone away since the last movement.
@@ -47,6 +50,15 @@ class Body {
 
   const Pose2& pose() const { return pose_; }
   const Outline& outline() const { return outline_; }
+
+  /// Where the outline lies in map, and all that is mounted on the body with it.
+  Pose2 hull() const { return hull(pose_); }
+
+  /// No more than the clearance to everything is now; quick, and may be negative. Beyond `within` it is any number from
+  /// there on.
+  double room(const Surroundings& around, double within) const {
+    return std::min(room_, around.room_among_bodies(outline_, hull(), within));
+  }
 
   /// True from the moment an obstacle stops a movement, or another body is stopped by this one, until the body is a
   /// millimetre away from all of them.
@@ -64,6 +76,7 @@ class Body {
   double length(const Motion& motion) const;
 
  private:
+  Pose2 hull(const Pose2& pose) const { return turns_ ? pose : Pose2{pose.x, pose.y, yaw_}; }
   /// Takes the pose if it is free.
   bool try_pose(const Pose2& pose, const Surroundings& around);
   /// The part of a blocked arc, in [0, 1), that is free; takes the pose there.
@@ -73,6 +86,8 @@ class Body {
   void begin_contact(const Surroundings& around);
 
   Outline outline_;
+  bool turns_;
+  double yaw_;  // of the outline when it was put down
   Pose2 pose_;
   double room_ = 0.0;   // no more than the clearance to the world is now; exact after a look at it
   double clear_ = 0.0;  // to everything, when it was last looked at

@@ -35,7 +35,7 @@ Ramp ramp(double speed, double target, double acceleration, double deceleration,
   return {target, travelled + 0.5 * (speed + target) * needed + target * (time - needed)};
 }
 
-void DifferentialDrive::command(const Twist2& wanted, Duration now) {
+void Drive::command(const Twist2& wanted, Duration now) {
   if (!std::isfinite(wanted.linear) || !std::isfinite(wanted.angular)) {
     ++refused_;
     return;
@@ -45,13 +45,13 @@ void DifferentialDrive::command(const Twist2& wanted, Duration now) {
   fresh_until_ = now + command_timeout_;
 }
 
-Motion DifferentialDrive::step(Duration now, Duration dt) {
+Motion Drive::step(Duration now, Duration dt) {
   const bool fresh = now + dt <= fresh_until_;
-  const Twist2 target = fresh ? wanted_ : Twist2{};
+  target_ = fresh ? wanted_ : Twist2{};
   const double time = seconds(dt);
-  const Ramp linear = ramp(speed_.linear, target.linear, limits_.acceleration, limits_.deceleration, time);
+  const Ramp linear = ramp(speed_.linear, target_.linear, limits_.acceleration, limits_.deceleration, time);
   const Ramp angular =
-      ramp(speed_.angular, target.angular, limits_.angular_acceleration, limits_.angular_acceleration, time);
+      ramp(speed_.angular, target_.angular, limits_.angular_acceleration, limits_.angular_acceleration, time);
   speed_ = {linear.speed, angular.speed};
   return {linear.travelled, angular.travelled};
 }

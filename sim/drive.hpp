@@ -1,4 +1,4 @@
-/// How a differential drive follows the speed it is told: within its limits, and never on an old command.
+/// How a drive follows the speed it is told: within its limits, and never on an old command.
 #pragma once
 
 #include <chrono>
@@ -35,11 +35,12 @@ struct Ramp {
 /// `acceleration`, so that reversing brakes first. Both limits are positive.
 Ramp ramp(double speed, double target, double acceleration, double deceleration, double time);
 
-class DifferentialDrive {
+/// Drives base_link forward and backward, and turns it; how its wheels do that is wheels.hpp's.
+class Drive {
  public:
   /// Full braking begins no later than `command_timeout` after the last fresh command, whatever happened to whoever
   /// sent it.
-  explicit DifferentialDrive(const DriveLimits& limits, Duration command_timeout = std::chrono::milliseconds(250))
+  explicit Drive(const DriveLimits& limits, Duration command_timeout = std::chrono::milliseconds(250))
       : limits_(limits), command_timeout_(command_timeout) {}
 
   /// Takes a new speed at time `now`, clamped to the limits. A speed that is not finite is refused and counted; it does
@@ -54,6 +55,8 @@ class DifferentialDrive {
   void stop_turning() { speed_.angular = 0.0; }
 
   const Twist2& speed() const { return speed_; }
+  /// What it was on its way to in the last step: the latest command, or standstill once that was too old.
+  const Twist2& target() const { return target_; }
   std::uint64_t refused_commands() const { return refused_; }
 
  private:
@@ -61,6 +64,7 @@ class DifferentialDrive {
   Duration command_timeout_;
   Twist2 speed_;
   Twist2 wanted_;
+  Twist2 target_;
   Duration fresh_until_{0};
   std::uint64_t refused_ = 0;
 };

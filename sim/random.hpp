@@ -12,7 +12,17 @@ namespace kervan::sim {
 std::array<std::uint32_t, 4> philox4x32(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
 /// What a robot draws random numbers for.
-enum class RandomUse : std::uint16_t { odometry_scale = 1, sonar = 2, laser = 3 };
+enum class RandomUse : std::uint16_t {
+  odometry_scale = 1,
+  sonar = 2,
+  laser = 3,
+  sonar_incidence = 4,
+  sonar_crosstalk = 5,
+  wheel_scale = 6,
+  wheel_slip = 7,
+  gyro_scale = 8,
+  gyro_noise = 9
+};
 
 /// The numbers of one robot in one run.
 class RandomSource {

@@ -8,14 +8,17 @@
 #include <utility>
 #include <vector>
 
+#include "sim/bumpers.hpp"
 #include "sim/contact.hpp"
 #include "sim/drive.hpp"
+#include "sim/gyro.hpp"
 #include "sim/laser.hpp"
 #include "sim/odometry.hpp"
 #include "sim/random.hpp"
 #include "sim/robot_model.hpp"
 #include "sim/sonar.hpp"
 #include "sim/surroundings.hpp"
+#include "sim/wheels.hpp"
 
 namespace kervan::sim {
 
@@ -26,14 +29,17 @@ struct RobotSetup {
   Pose2 start;  ///< of base_link in map
   SonarSettings sonar = {};
   LaserSettings laser = {};
-  double odometry_error = 0.0;  ///< bound of the scale errors, per metre and per radian
-  Duration sonar_period = std::chrono::milliseconds(100);
+  OdometryErrors odometry = {};
+  std::optional<GyroSettings> gyro = {};                   ///< nothing: the robot has none
+  double touch_range = 0.02;                               ///< m; see Bumpers
+  Duration sonar_period = std::chrono::milliseconds(100);  ///< between two rounds, also of sonars that fire in turn
   Duration laser_period = std::chrono::milliseconds(100);
   Duration odometry_period = std::chrono::milliseconds(50);
-  Duration command_timeout = std::chrono::milliseconds(250);  ///< see DifferentialDrive
+  Duration gyro_period = std::chrono::milliseconds(20);
+  Duration command_timeout = std::chrono::milliseconds(250);  ///< see Drive
 };
 
-/// One round of all sonars; see Sonars::measure for the ranges.
+/// One round of the sonars; see Sonars::measure for the ranges.
 struct SonarScan {
   Duration stamp{0};
   std::vector<double> ranges;
@@ -50,6 +56,12 @@ struct OdometryReading {
   Duration stamp{0};
   Pose2 pose;    ///< of base_link in odom
   Twist2 twist;  ///< of base_link
+};
+
+/// One reading of the gyroscope.
+struct GyroReading {
+  Duration stamp{0};
+  double rate = 0.0;  ///< rad/s
 };
 
 /// A robot cannot stand where it is wanted: something is in the way.
@@ -100,22 +112,36 @@ class Robot {
   const Pose2& pose() const { return body_.pose(); }
   const Twist2& speed() const { return drive_.speed(); }
   const Body& body() const { return body_; }
-  const DifferentialDrive& drive() const { return drive_; }
+  const Drive& drive() const { return drive_; }
+
+  /// Where something sits in base_link now that is mounted on the body. The body of a synchro drive does not turn with
+  /// base_link, so what is mounted on it does not stay where it was.
+  Pose2 mounted(const Pose2& on_body) const;
 
   /// The latest measurements.
   const SonarScan& sonar() const { return sonar_scan_; }
   const LaserSweep& laser() const { return laser_sweep_; }  ///< without ranges if the robot has no laser
   const OdometryReading& odometry() const { return odometry_reading_; }
+  const GyroReading& gyro() const { return gyro_reading_; }
+
+  /// What is felt in every step: the bumpers that are pressed, in the order of Bumpers::segments(), and the wheels that
+  /// are held up.
+  const Bumpers& bumpers() const { return bumpers_; }
+  const std::vector<bool>& pressed() const { return pressed_; }
+  const Stall& stall() const { return stall_; }
 
  private:
   void measure_sonar(const Surroundings& around, Duration now);
   void measure_laser(const Surroundings& around, Duration now);
   void measure_odometry(Duration now);
+  void measure_gyro(Duration now);
+  void feel(const Surroundings& around);
 
   RobotSetup setup_;
   RandomSource random_;
-  DifferentialDrive drive_;
+  Drive drive_;
   Motion planned_;
+  Duration planned_at_{0};
   Body body_;
   Odometry odometry_;
   Sonars sonars_;
@@ -123,6 +149,11 @@ class Robot {
   std::optional<Laser> laser_;
   LaserSweep laser_sweep_;
   OdometryReading odometry_reading_;
+  std::optional<Gyro> gyro_;
+  GyroReading gyro_reading_;
+  Bumpers bumpers_;
+  std::vector<bool> pressed_;
+  Stall stall_;
 };
 
 }  // namespace kervan::sim

@@ -35,7 +35,7 @@ void Simulation::add(RobotSetup setup) {
     if (moving.name == setup.name)
       throw std::invalid_argument("robot " + setup.name + " has the name of a moving obstacle");
   Robot robot(std::move(setup), seed_, around(robots_.size()));
-  bodies_.add(robot.name(), robot.body().outline(), robot.pose());
+  bodies_.add(robot.name(), robot.body().outline(), robot.body().hull());
   order_.insert(place, robots_.size());
   robots_.push_back(std::move(robot));
   ways_.resize(robots_.size());
@@ -59,7 +59,7 @@ void Simulation::remove(std::string_view name) {
 void Simulation::teleport(std::string_view name, const Pose2& pose) {
   const std::size_t robot = place_of(name);
   robots_[robot].teleport(pose, around(robot));
-  bodies_.move(body_of(robot), pose);
+  bodies_.move(body_of(robot), robots_[robot].body().hull());
 }
 
 std::optional<std::size_t> Simulation::find(std::string_view name) const {
@@ -109,12 +109,12 @@ void Simulation::drive(Duration dt) {
     Robot& robot = robots_[i];
     const Body& body = robot.body();
     const double near = body.heeds() + body.length(robot.planned()) + longest_way + doubt;
-    has_driven_[i] = around(i).room_among_bodies(body.outline(), body.pose(), near) >= near;
+    has_driven_[i] = around(i).room_among_bodies(body.outline(), body.hull(), near) >= near;
     if (has_driven_[i]) robot.drive(*world_);
   });
   for (const std::size_t i : order_) {
     if (!has_driven_[i]) drive_among_others(i);
-    bodies_.move(body_of(i), robots_[i].pose());
+    bodies_.move(body_of(i), robots_[i].body().hull());
   }
 }
 

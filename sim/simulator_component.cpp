@@ -55,10 +55,17 @@ class SimulatorComponent final : public Component {
 
   std::deque<RobotPorts> ports() {
     std::deque<RobotPorts> ports;
-    // Without a world there are no robots, only declarations: then the laser's is among them.
     const std::vector<Robot>& simulated = simulation_.robots();
-    for (const auto& [name, robot] : params_.robots)
-      ports.emplace_back(this, name, simulated.empty() || simulated[ports.size()].setup().model.laser.has_value());
+    for (const auto& [name, robot] : params_.robots) {
+      // Without a world there are no robots, only declarations: then everything that a robot may have is among them.
+      RobotPorts::Equipment equipment{true, true, true, true};
+      if (!simulated.empty()) {
+        const RobotSetup& setup = simulated[ports.size()].setup();
+        equipment = {setup.model.laser.has_value(), setup.gyro.has_value(), setup.model.fitted != BumperSet::none,
+                     robot.stall_flags};
+      }
+      ports.emplace_back(this, name, equipment);
+    }
     return ports;
   }
 

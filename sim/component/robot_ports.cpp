@@ -27,21 +27,30 @@ geometry_msgs::msg::TransformStamped transform(Time stamp, const std::string& pa
 
 }  // namespace
 
-RobotPorts::RobotPorts(Component* owner, const std::string& name, bool has_laser)
+RobotPorts::RobotPorts(Component* owner, const std::string& name, const Equipment& equipment)
     : odom_frame_(name + "/odom"),
       base_frame_(name + "/base_link"),
       laser_frame_(name + "/laser"),
       cmd_vel_(owner, name + "/cmd_vel", qos::command.optional(),
                "Speed wanted of " + name + "; it brakes command_timeout after the last one."),
-      sonar_(owner, name + "/sonar", qos::sensor, "What the sonars of " + name + " measure; +inf without an echo."),
+      sonar_(owner, name + "/sonar", qos::sensor,
+             "What the sonars of " + name + " measure; +inf without an echo, NaN if it is not their turn."),
       odom_(owner, name + "/odom", qos::sensor, "Pose and speed of " + name + " by its own wheels."),
       truth_(owner, name + "/truth", qos::state, "True pose in map and true speed of " + name + ", every step."),
       contact_(owner, name + "/contact", qos::event, "Each time " + name + " begins to touch something."),
       clearance_(owner, name + "/clearance", qos::latched,
                  "Least distance of the hull of " + name + " to any obstacle or robot so far.") {
-  if (has_laser)
+  if (equipment.laser)
     scan_.emplace(owner, name + "/scan", qos::sensor,
                   "What the laser of " + name + ", if it has one, measures in the frame " + laser_frame_ + ".");
+  if (equipment.gyro)
+    imu_.emplace(owner, name + "/imu", qos::sensor, "Turn rate of " + name + " by its gyroscope, if it has one.");
+  if (equipment.bumpers)
+    bumpers_.emplace(owner, name + "/bumpers", qos::latched,
+                     "Which bumpers of " + name + ", if it wears any, are pressed; when that changes.");
+  if (equipment.stall_flags)
+    stall_.emplace(owner, name + "/stall", qos::latched,
+                   "Which wheels of " + name + " an obstacle holds up, if asked for; when that changes.");
 }
 
 void RobotPorts::steer(Simulation& simulation, std::size_t robot) {
@@ -62,10 +71,13 @@ void RobotPorts::publish(const Robot& robot, Duration simulated, Time now, tf2_m
     if (map_to_odom) frames.transforms.push_back(transform(now, "map", odom_frame_, Pose2{}));
     frames.transforms.push_back(transform(now, odom_frame_, base_frame_, robot.odometry().pose));
     if (const auto& laser = robot.setup().model.laser)
-      frames.transforms.push_back(transform(now, base_frame_, laser_frame_, laser->pose));
+      frames.transforms.push_back(transform(now, base_frame_, laser_frame_, robot.mounted(laser->pose)));
   }
   if (robot.sonar().stamp == simulated && !robot.sonar().ranges.empty()) publish_sonar(robot, now);
   if (scan_ && robot.laser().stamp == simulated) publish_scan(robot, now);
+  if (imu_ && robot.gyro().stamp == simulated) publish_gyro(robot.gyro(), robot.setup().gyro->noise, now);
+  if (bumpers_ && pressed_ != robot.pressed()) publish_bumpers(robot, now);
+  if (stall_ && stalled_ != robot.stall()) publish_stall(robot.stall(), now);
 }
 
 void RobotPorts::publish_truth(const Robot& robot, Time now) {
@@ -94,9 +106,10 @@ void RobotPorts::publish_sonar(const Robot& robot, Time now) {
   message->readings.resize(ring.poses.size());
   for (std::size_t i = 0; i < ring.poses.size(); ++i) {
     auto& reading = message->readings[i];
-    reading.x = static_cast<float>(ring.poses[i].x);
-    reading.y = static_cast<float>(ring.poses[i].y);
-    reading.yaw = static_cast<float>(ring.poses[i].yaw);
+    const Pose2 pose = robot.mounted(ring.poses[i]);
+    reading.x = static_cast<float>(pose.x);
+    reading.y = static_cast<float>(pose.y);
+    reading.yaw = static_cast<float>(pose.yaw);
     reading.range = static_cast<float>(robot.sonar().ranges[i]);
   }
   sonar_.publish(std::move(message));
@@ -138,6 +151,46 @@ void RobotPorts::publish_contacts(const Robot& robot, Time now) {
     message->range = static_cast<float>(min_clearance_);
     clearance_.publish(std::move(message));
   }
+}
+
+void RobotPorts::publish_gyro(const GyroReading& reading, double noise, Time now) {
+  auto message = imu_->loan();
+  geometry::set_header(message->header, now, base_frame_);
+  message->angular_velocity.z = reading.rate;
+  message->angular_velocity_covariance[8] = noise * noise;
+  // Neither orientation nor acceleration is measured.
+  message->orientation_covariance[0] = -1.0;
+  message->linear_acceleration_covariance[0] = -1.0;
+  imu_->publish(std::move(message));
+}
+
+void RobotPorts::publish_bumpers(const Robot& robot, Time now) {
+  pressed_ = robot.pressed();
+  auto message = bumpers_->loan();
+  geometry::set_header(message->header, now, base_frame_);
+  const std::vector<Pose2>& segments = robot.bumpers().segments();
+  message->segments.resize(segments.size());
+  message->pressed = false;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const Pose2 pose = robot.mounted(segments[i]);
+    auto& segment = message->segments[i];
+    segment.x = static_cast<float>(pose.x);
+    segment.y = static_cast<float>(pose.y);
+    segment.yaw = static_cast<float>(pose.yaw);
+    segment.length = static_cast<float>(robot.setup().model.bumpers.length);
+    segment.pressed = (*pressed_)[i];
+    message->pressed = message->pressed || segment.pressed;
+  }
+  bumpers_->publish(std::move(message));
+}
+
+void RobotPorts::publish_stall(const Stall& stall, Time now) {
+  stalled_ = stall;
+  auto message = stall_->loan();
+  geometry::set_header(message->header, now, base_frame_);
+  message->left = stall.left;
+  message->right = stall.right;
+  stall_->publish(std::move(message));
 }
 
 }  // namespace kervan::sim

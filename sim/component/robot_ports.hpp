@@ -4,12 +4,16 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
+#include "kervan_msgs/msg/BumperState.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
+#include "kervan_msgs/msg/StallState.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
+#include "sensor_msgs/msg/Imu.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
 #include "sensor_msgs/msg/Range.hpp"
 #include "sim/simulation.hpp"
@@ -21,7 +25,15 @@ namespace kervan::sim {
 /// with a laser, <name>/laser.
 class RobotPorts {
  public:
-  RobotPorts(Component* owner, const std::string& name, bool has_laser);
+  /// What a robot may have or lack.
+  struct Equipment {
+    bool laser = false;
+    bool gyro = false;
+    bool bumpers = false;
+    bool stall_flags = false;
+  };
+
+  RobotPorts(Component* owner, const std::string& name, const Equipment& equipment);
 
   /// Hands the drive what has been commanded since the last step.
   void steer(Simulation& simulation, std::size_t robot);
@@ -40,6 +52,9 @@ class RobotPorts {
   void publish_sonar(const Robot& robot, Time now);
   void publish_scan(const Robot& robot, Time now);
   void publish_contacts(const Robot& robot, Time now);
+  void publish_gyro(const GyroReading& reading, double noise, Time now);
+  void publish_bumpers(const Robot& robot, Time now);
+  void publish_stall(const Stall& stall, Time now);
 
   std::string odom_frame_;
   std::string base_frame_;
@@ -51,8 +66,13 @@ class RobotPorts {
   Output<nav_msgs::msg::Odometry> truth_;
   Output<kervan_msgs::msg::Contact> contact_;
   Output<sensor_msgs::msg::Range> clearance_;
+  std::optional<Output<sensor_msgs::msg::Imu>> imu_;
+  std::optional<Output<kervan_msgs::msg::BumperState>> bumpers_;
+  std::optional<Output<kervan_msgs::msg::StallState>> stall_;
   std::uint64_t contacts_ = 0;
   double min_clearance_ = infinity;
+  std::optional<std::vector<bool>> pressed_;  // as published last
+  std::optional<Stall> stalled_;
   bool last_refused_ = false;
 };
 

@@ -22,6 +22,14 @@ double positive(const config::Node& node, std::string_view unit, double highest)
   return value;
 }
 
+double not_negative(const config::Node& node, std::string_view unit, double highest) {
+  const double value = node.as_quantity(unit);
+  if (!(value >= 0.0 && value <= highest))
+    node.fail(node.shown() + " is out of range; allowed: 0 .. " + text_of(highest) + (unit.empty() ? "" : " ") +
+              std::string(unit));
+  return value;
+}
+
 namespace {
 
 void require_within(const config::Node& coordinate, double value, double limit) {

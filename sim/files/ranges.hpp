@@ -18,6 +18,9 @@ std::string text_of(double number);
 /// The quantity in SI units, or ConfigError at the node if it is not positive or above `highest`.
 double positive(const config::Node& node, std::string_view unit, double highest);
 
+/// The same for what may also be 0.
+double not_negative(const config::Node& node, std::string_view unit, double highest);
+
 /// A point of map, or ConfigError at the coordinate that is farther than `limit` from the origin.
 Vector2 point_within(const config::Node& node, double limit);
 

@@ -24,7 +24,7 @@ class Driven {
     for (const Duration end = now + time; now < end; now += tick) take(drive.step(now, tick));
   }
 
-  DifferentialDrive drive{p3dx().drive};
+  Drive drive{p3dx().drive};
   Duration now{0};
   double distance = 0.0;
   double turn = 0.0;
@@ -122,7 +122,7 @@ TEST(Drive, BeginsFullBrakingAQuarterOfASecondAfterTheLastCommand) {
 }
 
 TEST(Drive, AStepThatWouldOutliveTheCommandIsBrakedFromItsBeginning) {
-  DifferentialDrive drive(p3dx().drive);
+  Drive drive(p3dx().drive);
   drive.command({0.5, 0.0}, 0ms);
   drive.step(0ms, 200ms);
   const double before = drive.speed().linear;

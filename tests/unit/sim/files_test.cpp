@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include "sim/files/robot_file.hpp"
 #include "sim/files/world_file.hpp"
 #include "tests/unit/config/refused.hpp"
 #include "tests/unit/sim/p3dx.hpp"
@@ -150,98 +149,6 @@ TEST(WorldFile, MistakesInLowAndMovingObstaclesAreNamedAtTheirPlace) {
   EXPECT_EQ(
       world_refusal("moving:\n  - {name: c, radius: 1 m, " + path + "}\n  - {name: c, radius: 1 m, " + path + "}\n"),
       "w.yaml:5:12: name: c is the name of another moving obstacle");
-}
-
-TEST(RobotFile, TheP3DxIsThatOfItsTable) {
-  EXPECT_EQ(p3dx().name, "p3dx");
-  EXPECT_EQ(p3dx().drive.speed, 1.0);
-  EXPECT_EQ(p3dx().drive.turn_rate, 1.74);
-  EXPECT_EQ(p3dx().drive.acceleration, 0.3);
-  EXPECT_EQ(p3dx().drive.deceleration, 0.6);
-  EXPECT_EQ(p3dx().drive.angular_acceleration, 1.74);
-  EXPECT_NEAR(p3dx().outline.circumradius(), 0.32, 0.001);
-  double front = 0.0, rear = 0.0, left = 0.0;
-  for (const Vector2& corner : p3dx().outline.corners()) {
-    front = std::max(front, corner.x());
-    rear = std::min(rear, corner.x());
-    left = std::max(left, corner.y());
-  }
-  EXPECT_EQ(front, 0.211);
-  EXPECT_EQ(rear, -0.300);
-  EXPECT_EQ(left, 0.200);
-}
-
-TEST(RobotFile, TheP3AtIsThatOfItsTable) {
-  const RobotModel model = load_robot_model(KERVAN_SIM_FOLDER "/robots/p3at.yaml");
-  EXPECT_EQ(model.name, "p3at");
-  EXPECT_EQ(model.drive.speed, 0.6);
-  EXPECT_EQ(model.drive.turn_rate, 0.75);
-  ASSERT_EQ(model.sonars.poses.size(), 16u);
-  EXPECT_NEAR(model.sonars.poses[3].x, 0.245, 1e-12);
-  for (std::size_t i = 0; i < 8; ++i) {
-    EXPECT_EQ(model.sonars.poses[i].y, -model.sonars.poses[7 - i].y) << "sonar " << i;
-    EXPECT_EQ(model.sonars.poses[8 + i].x, model.sonars.poses[15 - i].x) << "sonar " << 8 + i;
-  }
-  for (const Pose2& pose : model.sonars.poses) EXPECT_TRUE(model.outline.contains(pose.position()));
-  ASSERT_TRUE(model.laser);
-  EXPECT_EQ(model.laser->beams, 181);
-  EXPECT_NEAR(beam_spacing(*model.laser), pi / 180.0, 1e-15);
-  EXPECT_EQ(model.laser->pose.x, 0.125);
-  EXPECT_EQ(model.laser->max_range, 32.767);
-}
-
-TEST(RobotFile, TheJackalIsThatOfBarn) {
-  const RobotModel model = load_robot_model(KERVAN_SIM_FOLDER "/robots/jackal.yaml");
-  EXPECT_EQ(model.name, "jackal");
-  EXPECT_EQ(model.drive.speed, 2.0);
-  EXPECT_NEAR(model.outline.circumradius(), std::hypot(0.254, 0.215), 1e-12);
-  EXPECT_TRUE(model.sonars.poses.empty());
-  ASSERT_TRUE(model.laser);
-  EXPECT_EQ(model.laser->beams, 720);
-  EXPECT_NEAR(model.laser->field_of_view, 1.5 * pi, 1e-12);
-}
-
-constexpr const char* smallest_robot =
-    "kervan_robot: 1\n"
-    "name: r\n"
-    "outline: [[1 m, 0 m], [-1 m, 1 m], [-1 m, -1 m]]\n"
-    "drive: {type: differential, speed: 1 m/s, turn_rate: 1 rad/s, acceleration: 1 m/s2, deceleration: 1 m/s2, "
-    "angular_acceleration: 1 rad/s2}\n";
-
-std::string robot_refusal(const std::string& from, const std::string& to) {
-  std::string text = smallest_robot;
-  text.replace(text.find(from), from.size(), to);
-  return refused([&] { parse_robot_model(text, "r.yaml"); });
-}
-
-TEST(RobotFile, ARobotMayHaveNoSonars) {
-  EXPECT_TRUE(parse_robot_model(smallest_robot, "r.yaml").sonars.poses.empty());
-}
-
-TEST(RobotFile, EveryMistakeIsNamedAtItsPlace) {
-  EXPECT_EQ(robot_refusal("[-1 m, 1 m], [-1 m, -1 m]", "[-1 m, -1 m], [-1 m, 1 m]"),
-            "r.yaml:3:10: outline: the corners of an outline must be convex and counter-clockwise");
-  EXPECT_EQ(robot_refusal("differential", "synchro"), "r.yaml:4:15: type: synchro is not one of differential");
-  EXPECT_EQ(robot_refusal("speed: 1 m/s", "speed: 0 m/s"),
-            "r.yaml:4:36: speed: 0 m/s is out of range; allowed: above 0, at most 100 m/s");
-  EXPECT_EQ(robot_refusal("speed: 1 m/s, ", ""), "r.yaml:4:8: drive: the key 'speed' is missing");
-  EXPECT_EQ(
-      robot_refusal("name: r", "name: r\nsonars: {min_range: 2 m, max_range: 1 m, field_of_view: 1 rad, poses: []}"),
-      "r.yaml:3:21: min_range: 2 m is out of range; allowed: above 0, at most 1 m");
-  const auto laser_refusal = [](const std::string& from, const std::string& to) {
-    std::string laser =
-        "laser: {pose: [0 m, 0 m, 0 deg], beams: 181, field_of_view: 180 deg, min_range: 5 cm, "
-        "max_range: 8 m}";
-    laser.replace(laser.find(from), from.size(), to);
-    return robot_refusal("name: r", "name: r\n" + laser);
-  };
-  EXPECT_EQ(laser_refusal("beams: 181", "beams: 1"), "r.yaml:3:41: beams: 1 is out of range; allowed: 2 .. 100000");
-  EXPECT_EQ(laser_refusal("beams: 181, ", ""), "r.yaml:3:8: laser: the key 'beams' is missing");
-  EXPECT_EQ(laser_refusal("180 deg", "360 deg"),
-            "r.yaml:3:61: field_of_view: the first and the last beam would be the same; a full turn of n beams has "
-            "(n - 1) / n of it");
-  EXPECT_EQ(laser_refusal("min_range: 5 cm", "min_range: 9 m"),
-            "r.yaml:3:81: min_range: 9 m is out of range; allowed: above 0, at most 8 m");
 }
 
 }  // namespace

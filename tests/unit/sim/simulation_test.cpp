@@ -18,7 +18,7 @@ std::shared_ptr<const World> lab() {
 RobotSetup imperfect(std::string name, Pose2 start) {
   RobotSetup setup = perfect(std::move(name), start);
   setup.sonar = {.noise = 0.01, .drop_out = 0.02};
-  setup.odometry_error = 0.03;
+  setup.odometry.drift = 0.03;
   return setup;
 }
 
@@ -140,11 +140,26 @@ TEST(Simulation, SaysWhichRobotCannotBe) {
   setup.command_timeout = 0ms;
   EXPECT_EQ(refusal({setup}), "robot r2: the time-out of its drive must be positive");
   setup = perfect("r2", {});
-  setup.odometry_error = 1.5;
+  setup.odometry.drift = 1.5;
   EXPECT_EQ(refusal({setup}), "robot r2: the odometry error must be in [0, 1)");
   setup = perfect("r2", {});
   setup.model.drive.speed = 0.0;
   EXPECT_EQ(refusal({setup}), "robot model p3dx: every limit of the drive must be a positive number");
+  setup = perfect("r2", {});
+  setup.model.track = 0.0;
+  EXPECT_EQ(refusal({setup}), "robot model p3dx: the track of a differential drive must be positive");
+  setup = perfect("r2", {});
+  setup.model.sonars.arrays = {{0, 1, 2}};
+  EXPECT_EQ(refusal({setup}), "robot model p3dx: each sonar must be in one array, and in one only");
+  setup = perfect("r2", {});
+  setup.sonar.rays = 0;
+  EXPECT_EQ(refusal({setup}), "robot r2: a sonar needs at least 1 ray");
+  setup = perfect("r2", {});
+  setup.touch_range = 0.0;
+  EXPECT_EQ(refusal({setup}), "robot r2: the touch range of the bumpers must be positive");
+  setup = perfect("r2", {});
+  setup.gyro = GyroSettings{.scale = 1.0};
+  EXPECT_EQ(refusal({setup}), "robot r2: the scale error of the gyroscope must be in [0, 1)");
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ std::shared_ptr<const World> room() {
 RobotSetup noisy(std::string name, Pose2 start) {
   RobotSetup setup = perfect(std::move(name), start);
   setup.sonar = {.noise = 0.01, .drop_out = 0.02};
-  setup.odometry_error = 0.03;
+  setup.odometry.drift = 0.03;
   return setup;
 }
 

@@ -22,10 +22,12 @@ std::vector<RobotSetup> crowd() {
   std::vector<RobotSetup> setups;
   for (int i = 0; i < columns * rows; ++i) {
     RobotSetup setup = perfect("r" + std::to_string(i), {spacing * (i % columns), spacing * (i / columns), 0.7 * i});
+    if (i % 4 == 1) setup.model = load_robot_model(KERVAN_SIM_FOLDER "/robots/k2a.yaml");
     setup.sonar = {.rays = 3, .noise = 0.01, .drop_out = 0.01};
     setup.model.laser = LaserMount{.pose = {0.1, 0.0, 0.0}, .beams = 31, .field_of_view = pi, .max_range = 4.0};
-    setup.odometry_error = 0.02;
+    setup.odometry.drift = 0.02;
     setup.model.drive.acceleration = 2.0;
+    if (i % 4 == 1 || i % 4 == 2) setup = with_everything(std::move(setup));
     setups.push_back(std::move(setup));
   }
   return setups;
@@ -52,8 +54,12 @@ void note(const Robot& robot, std::vector<double>& history) {
                  {robot.pose().x, robot.pose().y, robot.pose().yaw, robot.speed().linear, robot.body().min_clearance(),
                   static_cast<double>(robot.body().contacts()), robot.body().touching() ? 1.0 : 0.0, contact.point.x(),
                   contact.point.y(), robot.odometry().pose.x});
+  history.insert(history.end(), {robot.gyro().rate, robot.odometry().pose.yaw, robot.stall().left ? 1.0 : 0.0,
+                                 robot.stall().right ? 1.0 : 0.0});
+  history.insert(history.end(), robot.pressed().begin(), robot.pressed().end());
   history.push_back(contact.other.empty() ? -1.0 : std::stod(contact.other.substr(1)));
-  history.insert(history.end(), robot.sonar().ranges.begin(), robot.sonar().ranges.end());
+  // Histories are compared as numbers, and no NaN is equal to another.
+  for (const double range : robot.sonar().ranges) history.push_back(std::isnan(range) ? -1.0 : range);
   history.insert(history.end(), robot.laser().ranges.begin(), robot.laser().ranges.end());
 }
 
@@ -90,7 +96,7 @@ std::vector<double> history_by_the_rules(Duration dt, int steps) {
       const auto contacts = robots[i].body().contacts();
       robots[i].plan(now, dt);
       robots[i].drive(Surroundings(*world, bodies, i));
-      bodies.move(i, robots[i].pose());
+      bodies.move(i, robots[i].body().hull());
       if (robots[i].body().contacts() == contacts) continue;
       const Contact& contact = robots[i].body().last_contact();
       for (Robot& other : robots)
