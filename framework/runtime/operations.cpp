@@ -111,8 +111,8 @@ void Operations::hold(ComponentInstance& instance) {
 }
 
 void Operations::release(ComponentInstance& instance) {
-  if (Dispatcher* const dispatcher = instance.dispatcher.load()) dispatcher->release(instance);
   if (instance.take_status_due(container_.present().time)) container_.publish_status(instance);
+  if (Dispatcher* const dispatcher = instance.dispatcher.load()) dispatcher->release(instance);
 }
 
 /// Peers in lockstep know each other's writers and readers, and wait for exactly these.
