@@ -8,6 +8,7 @@
 
 #include "components/observe/decimal.hpp"
 #include "components/observe/svg_writer.hpp"
+#include "components/observe/world_layer.hpp"
 
 namespace kervan::observe {
 namespace {
@@ -29,9 +30,6 @@ constexpr const char* solid_colour = "#9aa5b1";
 constexpr const char* success_colour = "#2c8a4b";
 constexpr const char* failure_colour = "#c0392b";
 constexpr const char* fonts = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
-
-std::string metres(double value) { return decimal(value, 4); }
-std::string pixels(double value) { return decimal(value, 1); }
 
 /// The part of the world that is drawn.
 struct Bounds {
@@ -64,6 +62,8 @@ Bounds bounds_of(const MapDrawing& drawing) {
     bounds.add(robot.truth);
     bounds.add(robot.odometry);
     if (robot.goal) bounds.add(*robot.goal, robot.tolerance);
+    for (const auto& snapshot : robot.snapshots)
+      for (const auto& area : snapshot.seen) bounds.add(area);
   }
   if (!(bounds.width() >= 0.0)) bounds.add(Vector2::Zero());
   bounds.add(bounds.low, 0.5);
@@ -80,83 +80,6 @@ double round_step(double value) {
 }
 
 std::string length_text(double length) { return decimal(length, length < 0.095 ? 2 : length < 0.95 ? 1 : 0) + " m"; }
-
-/// Draws shapes of the world. A pixel is `px` metres, so that lines and marks keep their size on the page at any scale.
-class WorldLayer {
- public:
-  WorldLayer(SvgWriter& svg, double px) : svg_(svg), px_(px) {}
-
-  double px() const { return px_; }
-
-  void line(const Polyline& points, const char* colour, double width, const std::string& dashes = {},
-            const char* opacity = "") {
-    std::string data;
-    for (const auto& point : points) {
-      if (!point.allFinite()) continue;
-      data += data.empty() ? "M" : " L";
-      data += metres(point.x()) + ',' + metres(-point.y());
-    }
-    if (data.empty()) return;
-    svg_.element("path", {{"d", data},
-                          {"fill", "none"},
-                          {"stroke", colour},
-                          {"stroke-width", metres(width * px_)},
-                          {"stroke-dasharray", dashes},
-                          {"stroke-opacity", opacity},
-                          {"stroke-linecap", "round"},
-                          {"stroke-linejoin", "round"}});
-  }
-
-  /// A dash pattern given in pixels.
-  std::string dashes(double on, double off) const { return metres(on * px_) + ' ' + metres(off * px_); }
-
-  void circle(const Vector2& center, double radius, const char* fill, const char* stroke, double width,
-              const std::string& dashes = {}) {
-    if (!center.allFinite()) return;
-    svg_.element("circle", {{"cx", metres(center.x())},
-                            {"cy", metres(-center.y())},
-                            {"r", metres(radius)},
-                            {"fill", fill},
-                            {"stroke", stroke},
-                            {"stroke-width", metres(width * px_)},
-                            {"stroke-dasharray", dashes}});
-  }
-
-  void polygon(const Polyline& corners, const char* fill, const char* stroke, double width) {
-    std::string points;
-    for (const auto& corner : corners)
-      if (corner.allFinite()) points += metres(corner.x()) + ',' + metres(-corner.y()) + ' ';
-    if (points.empty()) return;
-    svg_.element("polygon", {{"points", points},
-                             {"fill", fill},
-                             {"stroke", stroke},
-                             {"stroke-width", metres(width * px_)},
-                             {"stroke-linejoin", "round"}});
-  }
-
-  /// A text whose font size is in pixels. Fonts smaller than one unit are drawn badly by some programs, so the text has
-  /// a coordinate system of its own in pixels.
-  void label(const Vector2& at, const std::string& content, double size, const char* colour, const char* anchor,
-             const Vector2& offset, const char* weight = "", bool halo = false) {
-    if (!at.allFinite()) return;
-    svg_.text(content, {{"transform",
-                         "translate(" + metres(at.x()) + ' ' + metres(-at.y()) + ") scale(" + decimal(px_, 6) + ")"},
-                        {"x", pixels(offset.x())},
-                        {"y", pixels(offset.y())},
-                        {"font-size", pixels(size)},
-                        {"font-weight", weight},
-                        {"fill", colour},
-                        {"stroke", halo ? "#ffffff" : ""},
-                        {"stroke-width", halo ? "3" : ""},
-                        {"stroke-linejoin", halo ? "round" : ""},
-                        {"paint-order", halo ? "stroke" : ""},
-                        {"text-anchor", anchor}});
-  }
-
- private:
-  SvgWriter& svg_;
-  double px_;
-};
 
 void draw_world(WorldLayer& layer, const DrawnWorld& world) {
   for (const auto& polygon : world.polygons) layer.polygon(polygon, solid_colour, wall_colour, 1.5);
@@ -210,6 +133,19 @@ void draw_waypoint(WorldLayer& layer, const Vector2& at, std::size_t number) {
   layer.circle(at, 2.6 * layer.px(), ink, "#ffffff", 0.8);
   layer.circle(badge, 9.0 * layer.px(), "#ffffff", ink, 1.3);
   layer.label(badge, std::to_string(number), 11.0, ink, "middle", {0.0, 4.0}, "bold");
+}
+
+void draw_arrowhead(WorldLayer& layer, const geometry::Pose2& pose, const char* colour) {
+  const auto corner = [&](double x, double y) { return pose * Vector2(layer.px() * Vector2(x, y)); };
+  layer.polygon({corner(9.0, 0.0), corner(-5.0, 5.0), corner(-2.5, 0.0), corner(-5.0, -5.0)}, colour, "#ffffff", 1.0);
+}
+
+/// Where the robot was, and when.
+void draw_snapshot_mark(WorldLayer& layer, const Snapshot& snapshot, const char* colour) {
+  draw_arrowhead(layer, snapshot.pose, colour);
+  const int digits = std::abs(snapshot.time - std::round(snapshot.time)) < 0.05 ? 0 : 1;
+  layer.label(snapshot.pose.position(), decimal(snapshot.time, digits) + " s", 10.5, colour, "start", {8.0, -8.0}, "",
+              true);
 }
 
 void draw_grid(WorldLayer& layer, const Bounds& bounds) {
@@ -269,6 +205,9 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, d
   WorldLayer layer(svg, px);
   draw_grid(layer, bounds);
   for (std::size_t i = 0; i < drawing.robots.size(); ++i) draw_route(layer, drawing.robots[i].route, colour_of(i));
+  for (std::size_t i = 0; i < drawing.robots.size(); ++i)
+    for (const auto& snapshot : drawing.robots[i].snapshots)
+      for (const auto& area : snapshot.seen) layer.veil(area, colour_of(i));
   draw_world(layer, drawing.world);
 
   for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
@@ -291,6 +230,7 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, d
     if (robot.goal) draw_goal(layer, *robot.goal);
     if (robot.closest) draw_closest(layer, *robot.closest);
     for (const auto& contact : robot.contacts) draw_contact(layer, contact);
+    for (const auto& snapshot : robot.snapshots) draw_snapshot_mark(layer, snapshot, colour_of(i));
     if (drawing.robots.size() > 1 && !robot.truth.empty())
       layer.label(robot.truth.front(), robot.name, 11.5, colour_of(i), "middle", {0.0, 18.0}, "bold", true);
   }
@@ -393,14 +333,14 @@ double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
 }
 
 /// What the lines and marks mean, in two columns from (margin, top) downwards, page pixels. Returns where it ends.
-double draw_legend(SvgWriter& svg, double top) {
+double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
   WorldLayer layer(svg, 1.0);
   const char* colour = robot_colours[0];
   struct Entry {
     const char* text;
     void (*draw)(WorldLayer&, const Polyline&, const char*);  // given the two ends of a sample line
   };
-  const std::array<Entry, 8> entries{{
+  std::vector<Entry> entries{
       {"driven, truth", [](WorldLayer& l, const Polyline& p, const char* c) { draw_truth(l, p, c); }},
       {"goal", [](WorldLayer& l, const Polyline& p, const char*) { draw_goal(l, (p[0] + p[1]) / 2.0); }},
       {"driven, by odometry", [](WorldLayer& l, const Polyline& p, const char*) { draw_odometry(l, p); }},
@@ -416,7 +356,14 @@ double draw_legend(SvgWriter& svg, double top) {
          draw_end(l, p[1] - Vector2(5.0, 0.0), c);
        }},
       {"contact", [](WorldLayer& l, const Polyline& p, const char*) { draw_contact(l, (p[0] + p[1]) / 2.0); }},
-  }};
+  };
+  if (std::any_of(drawing.robots.begin(), drawing.robots.end(), [](const auto& r) { return !r.snapshots.empty(); }))
+    entries.push_back(
+        {"seen by its sensors, at the time beside it", [](WorldLayer& l, const Polyline& p, const char* c) {
+           const geometry::Pose2 at{p[0].x(), p[0].y(), 0.0};
+           l.veil(cone(at, 0.5, 26.0), c);
+           draw_arrowhead(l, at, c);
+         }});
   double y = top;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double x = margin + (i % 2 == 0 ? 0.0 : 205.0);
@@ -437,7 +384,9 @@ std::string to_svg(const MapDrawing& drawing) {
 
   // The foot of the page is laid out first, because the page's height depends on it.
   SvgWriter foot;
-  const double text_bottom = draw_legend(foot, draw_figures(foot, drawing, map_bottom - 6.0) + 4.0);
+  const double text_bottom = drawing.robots.empty()
+                                 ? map_bottom - margin
+                                 : draw_legend(foot, drawing, draw_figures(foot, drawing, map_bottom - 6.0) + 4.0);
   std::vector<std::size_t> details;
   for (std::size_t i = 0; i < drawing.robots.size() && drawing.robots.size() <= most_details; ++i)
     if (has_detail(drawing.robots[i])) details.push_back(i);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "components/observe/polyline.hpp"
+#include "components/observe/snapshot.hpp"
 #include "framework/geometry/pose2.hpp"
 
 namespace kervan::observe {
@@ -34,18 +35,19 @@ struct DrawnRobot {
   double tolerance = 0.10;                   ///< around the goal
   std::optional<geometry::Vector2> closest;  ///< where it came nearest to the goal
   std::vector<geometry::Vector2> contacts;   ///< where it touched something
+  std::vector<Snapshot> snapshots;           ///< what its sensors saw, drawn in its colour with the time beside it
   bool reached = false;
   std::vector<std::pair<std::string, std::string>> figures;  ///< label and value, shown beside the map
 };
 
 struct MapDrawing {
   std::string title;
-  std::string result;    ///< "success", "failed", "aborted"; shown in its colour beside the title
+  std::string result;    ///< "success", "failed", "aborted", or empty; shown in its colour beside the title
   std::string subtitle;  ///< one line under the title
   DrawnWorld world;
   Polyline
       nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, those of up to three robots' routes are
-  std::vector<DrawnRobot> robots;
+  std::vector<DrawnRobot> robots;  ///< none: the picture of a world, without a legend
 };
 
 /// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <deque>
 #include <fstream>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,8 +18,11 @@
 #include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "kervan_msgs/msg/Outline.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
 #include "nav_msgs/msg/Path.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
+#include "tf2_msgs/msg/TFMessage.hpp"
 
 namespace kervan::observe {
 namespace {
@@ -32,6 +36,7 @@ struct MapReportParams {
   std::string title = "map";
   double tolerance = 0.10;
   Duration period = 100ms;
+  Duration snapshots{};
 
   template <class Visitor>
   void describe(Visitor& v) {
@@ -40,6 +45,8 @@ struct MapReportParams {
     v(title, "title", {.help = "Headline of the drawing."});
     v(tolerance, "tolerance", {.unit = "m", .min = 0.001, .max = 100.0, .help = "Radius of the circle around a goal."});
     v(period, "period", {.min = 0.001, .max = 60.0, .help = "Time between two rows of a robot."});
+    v(snapshots, "snapshots",
+      {.min = 0.0, .max = 3600.0, .help = "Draws what the sensors saw every so often; 0: never."});
   }
 };
 
@@ -55,24 +62,88 @@ DrawnWorld drawn(const kervan_msgs::msg::Outline& outline) {
   return world;
 }
 
+/// The sensors of one robot: what they saw at the beginning and every `period` after it.
+class Sensors {
+ public:
+  Sensors(Component* owner, const std::string& name, Duration period)
+      : period_(period),
+        base_frame_(name + "/base_link"),
+        sonar_(owner, name + "/sonar", qos::sensor.optional(), "What the sonars of " + name + " heard."),
+        scan_(owner, name + "/scan", qos::sensor.optional(), "What the laser of " + name + " saw.") {}
+
+  /// Remembers where the laser is mounted.
+  void take_frame(const geometry_msgs::msg::TransformStamped& frame) {
+    if (frame.header.frame_id != base_frame_) return;
+    geometry_msgs::msg::Pose pose;
+    pose.position.x = frame.transform.translation.x;
+    pose.position.y = frame.transform.translation.y;
+    pose.orientation = frame.transform.rotation;
+    mounts_[frame.child_frame_id] = geometry::pose_of(pose);
+  }
+
+  /// What was measured at the time that is due or first after it; nothing before there is something.
+  std::optional<Snapshot> look(const nav_msgs::msg::Odometry& truth, Time started) {
+    const Time due = started + taken_ * period_;
+    Snapshot snapshot;
+    Time seen_at = Time::min();
+    // The truth is newer than the measurement by less than its period: at its speed it was there.
+    const auto pose_at = [&](Time stamp) {
+      seen_at = std::max(seen_at, stamp);
+      return moved_back(geometry::pose_of(truth.pose.pose), geometry::twist_of(truth.twist.twist),
+                        seconds(geometry::time_of(truth.header.stamp) - stamp));
+    };
+    const auto* scan = scan_.latest();
+    if (scan && geometry::time_of(scan->header.stamp) >= due && mounts_.contains(scan->header.frame_id)) {
+      snapshot.pose = pose_at(geometry::time_of(scan->header.stamp));
+      snapshot.seen = sweep(snapshot.pose * mounts_.at(scan->header.frame_id), scan->angle_min, scan->angle_increment,
+                            scan->ranges);
+    }
+    const auto* sonar = sonar_.latest();
+    if (sonar && geometry::time_of(sonar->header.stamp) >= due) {
+      snapshot.pose = pose_at(geometry::time_of(sonar->header.stamp));
+      for (const auto& reading : sonar->readings)
+        if (reading.range <= sonar->max_range)
+          snapshot.seen.push_back(cone(snapshot.pose * geometry::Pose2{reading.x, reading.y, reading.yaw},
+                                       sonar->field_of_view, reading.range));
+    }
+    if (seen_at == Time::min()) return std::nullopt;
+    snapshot.time = seconds(seen_at - started);
+    taken_ = (seen_at - started) / period_ + 1;
+    return snapshot;
+  }
+
+ private:
+  Duration period_;
+  std::int64_t taken_ = 0;  // the next one is due after so many periods
+  std::string base_frame_;
+  Input<kervan_msgs::msg::SonarArray> sonar_;
+  Input<sensor_msgs::msg::LaserScan> scan_;
+  std::map<std::string, geometry::Pose2> mounts_;  // in base_link, by the names of their frames
+};
+
 /// One robot: its ports, and what it has done so far.
 class Subject {
  public:
-  Subject(Component* owner, const std::string& name)
+  Subject(Component* owner, const std::string& name, Duration snapshots)
       : truth_(owner, name + "/truth", qos::state, "True pose and speed of " + name + "."),
         odom_(owner, name + "/odom", qos::sensor.optional(), "Where " + name + " believes to be."),
         route_(owner, name + "/route", qos::latched.optional(), "What is planned for " + name + "."),
         goal_(owner, name + "/goal", qos::latched.optional(), "Where " + name + " is to go."),
         contact_(owner, name + "/contact", qos::event.optional(), "Every touch of " + name + ".") {
     drawn_.name = name;
+    if (snapshots > Duration::zero()) sensors_.emplace(owner, name, snapshots);
+  }
+
+  void take_frame(const geometry_msgs::msg::TransformStamped& frame) {
+    if (sensors_) sensors_->take_frame(frame);
   }
 
   /// Takes the newest samples and appends a row to `table`; nothing while the truth is unknown.
-  void look(double time, std::ostream& table) {
+  void look(Time started, Time now, std::ostream& table) {
     for (const auto& contact : contact_.take()) drawn_.contacts.emplace_back(contact->point.x, contact->point.y);
     const auto* truth = truth_.latest();
     if (!truth) return;
-    TrajectoryRow row{time, drawn_.name, geometry::pose_of(truth->pose.pose), std::nullopt,
+    TrajectoryRow row{seconds(now - started), drawn_.name, geometry::pose_of(truth->pose.pose), std::nullopt,
                       geometry::twist_of(truth->twist.twist)};
     drawn_.truth.push_back(row.truth.position());
     if (const auto* odometry = odom_.latest()) {
@@ -80,6 +151,8 @@ class Subject {
       drawn_.odometry.push_back(row.odom->position());
     }
     if (table) table << to_csv(row) << '\n';
+    if (!sensors_) return;
+    if (auto snapshot = sensors_->look(*truth, started)) drawn_.snapshots.push_back(std::move(*snapshot));
   }
 
   DrawnRobot drawing(double tolerance, const kervan_msgs::msg::MissionResult* result) const {
@@ -122,6 +195,7 @@ class Subject {
   Input<nav_msgs::msg::Path> route_;
   Input<geometry_msgs::msg::PoseStamped> goal_;
   Input<kervan_msgs::msg::Contact> contact_;
+  std::optional<Sensors> sensors_;
 };
 
 /// Writes trajectory.csv while the run goes on and map.svg at its end, into the run's folder. What it does not receive
@@ -131,6 +205,7 @@ class MapReportComponent final : public Component {
   std::deque<Subject> robots_ = subjects();
   Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), "True shape of the world."};
   Input<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched.optional(), "How the mission ended."};
+  std::optional<Input<tf2_msgs::msg::TFMessage>> tf_ = frames();
   Timer tick_{this, params_.period, &MapReportComponent::on_tick};
   std::ofstream table_;
   Time started_{};
@@ -144,9 +219,15 @@ class MapReportComponent final : public Component {
           static_cast<std::ptrdiff_t>(i))
         throw ParameterError("robots[" + std::to_string(i) + "]",
                              "'" + name + "' is there already; name each robot once");
-      robots.emplace_back(this, name);
+      robots.emplace_back(this, name, params_.snapshots);
     }
     return robots;
+  }
+
+  std::optional<Input<tf2_msgs::msg::TFMessage>> frames() {
+    if (params_.snapshots == Duration::zero()) return std::nullopt;
+    return std::optional<Input<tf2_msgs::msg::TFMessage>>(std::in_place, this, "/tf", qos::event.optional(),
+                                                          "Where the robots' lasers are mounted.");
   }
 
   void on_activate(Time now) override {
@@ -159,7 +240,11 @@ class MapReportComponent final : public Component {
 
   void on_tick(Time now) {
     looked_ = now;
-    for (auto& robot : robots_) robot.look(seconds(now - started_), table_);
+    if (tf_)
+      for (const auto& message : tf_->take())
+        for (const auto& frame : message->transforms)
+          for (auto& robot : robots_) robot.take_frame(frame);
+    for (auto& robot : robots_) robot.look(started_, now, table_);
   }
 
   void on_shutdown(Time now) override {

@@ -12,7 +12,7 @@ using namespace kervan;
 
 namespace {
 
-const std::vector<std::string> verbs = {"run", "check", "describe", "container", "systemd"};
+const std::vector<std::string> verbs = {"run", "check", "describe", "draw", "container", "systemd"};
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
@@ -101,6 +101,11 @@ void add_container(CLI::App& verb, cli::ContainerAsk& ask) {
       ->add_option("values", ask.parameters, "such as speed=\"0.4 m/s\"")
       ->type_name("NAME=VALUE")
       ->required();
+  CLI::App* call =
+      of_component(add("call", "Ask a component one of the requests that it declares; kervan describe lists them."));
+  call->add_option("request", ask.request, "such as teleport")->type_name("REQUEST")->required();
+  call->add_option("values", ask.parameters, "its arguments, such as pose=\"[1 m, 2 m, 90 deg]\"")
+      ->type_name("NAME=VALUE");
   of_component(add("snapshot", "All parameters of a container's components, or of one."), false);
 }
 
@@ -124,8 +129,9 @@ std::string reason(const CLI::ParseError& error, const CLI::App& app) {
   if (app.get_subcommands().empty()) return "a command is missing: " + config::joined(verbs);
   if (app.got_subcommand("container"))
     return app.get_subcommand("container")->get_subcommands().empty()
-               ? "what to ask is missing: list, state, load, unload, activate, deactivate, set or snapshot"
+               ? "what to ask is missing: list, state, load, unload, activate, deactivate, set, call or snapshot"
                : error.what();
+  if (app.got_subcommand("draw")) return "a world is missing; name a shipped one, such as lab, or a file";
   return "a composition is missing; name a shipped one, such as lab, or a file";
 }
 
@@ -148,6 +154,11 @@ int dispatch(int argc, char** argv) {
   run_verb->add_option("--threads", run.threads, "threads of the dispatcher, 1 to 64; else as the composition says")
       ->check(not_empty)
       ->type_name("N");
+  run_verb
+      ->add_option("--snapshots", run.snapshots,
+                   "show in map.svg what each robot's sensors saw at the start and every so often, e.g. 5s")
+      ->check(not_empty)
+      ->type_name("TIME");
   run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
       ->capture_default_str()
       ->check(not_empty)
@@ -170,6 +181,11 @@ int dispatch(int argc, char** argv) {
   describe_verb->add_flag("--markdown", describe.markdown, "print the tables for the component's page")
       ->needs(component)
       ->excludes(json_flag);
+
+  cli::DrawRequest draw;
+  CLI::App* draw_verb = app.add_subcommand("draw", "Draw a world, or a map of ROS or ARIA, as an SVG picture.");
+  draw_verb->add_option("world", draw.world, "name of a shipped world, or a file")->type_name("NAME|FILE")->required();
+  draw_verb->add_option("--out", draw.out, "file for the picture; else NAME.svg")->check(not_empty)->type_name("FILE");
 
   cli::SystemdRequest systemd;
   CLI::App* systemd_verb = app.add_subcommand("systemd", "Write the systemd units of a host's containers.");
@@ -201,6 +217,7 @@ int dispatch(int argc, char** argv) {
   try {
     if (*run_verb) return cli::run(run);
     if (*check_verb) return cli::check(check);
+    if (*draw_verb) return cli::draw(draw);
     if (*systemd_verb) return cli::systemd(systemd);
     if (*container_verb) return cli::container(ask);
     return cli::describe(describe);

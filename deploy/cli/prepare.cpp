@@ -9,13 +9,15 @@
 
 namespace kervan::cli {
 
-composition::ResolvedComposition prepare(const CompositionRequest& request, ComponentRegistry& registry) {
+composition::ResolvedComposition prepare(const CompositionRequest& request, ComponentRegistry& registry,
+                                         const std::function<void(composition::Composition&)>& adjust) {
   const Resources resources = find_resources();
   const auto file = composition::find_composition(request.composition, resources.compositions);
   InstalledComponents components(registry);
   const composition::ResolveOptions options{resources.files, {runtime::kStatusTopic, "/rosout"}};
-  return composition::resolve(composition::load(file, {request.arguments, request.place, request.host}), components,
-                              options);
+  composition::Composition loaded = composition::load(file, {request.arguments, request.place, request.host});
+  if (adjust) adjust(loaded);
+  return composition::resolve(std::move(loaded), components, options);
 }
 
 namespace {

@@ -36,12 +36,33 @@ extern "C" void on_signal(int signal) {
   std::signal(signal, SIG_DFL);
 }
 
+/// The time that an option gives.
+Duration time_given(const std::string& option, const std::string& text) {
+  const Duration time = config::scalar(text, "", option + " " + text).as_duration();
+  if (time <= Duration::zero()) throw ConfigError({option + " " + text, 0, 0}, "the time must be longer than 0 s");
+  return time;
+}
+
 Duration time_limit(const RunRequest& request) {
-  if (request.time_limit.empty()) return forever;
-  const Duration limit = config::scalar(request.time_limit, "", "--for " + request.time_limit).as_duration();
-  if (limit <= Duration::zero())
-    throw ConfigError({"--for " + request.time_limit, 0, 0}, "the time must be longer than 0 s");
-  return limit;
+  return request.time_limit.empty() ? forever : time_given("--for", request.time_limit);
+}
+
+/// Has every component that draws the run's map show what the sensors saw.
+void give_snapshots(composition::Composition& composition, const std::string& period) {
+  const std::string option = "--snapshots " + period;
+  time_given("--snapshots", period);
+  const char* const draws = "observe/map_report";
+  bool given = false;
+  for (composition::ComponentEntry& entry : composition.components) {
+    if (entry.type.text != draws) continue;
+    std::erase_if(entry.params.children, [](const config::Node& node) { return node.name == "snapshots"; });
+    entry.params.children.push_back(config::scalar(period, "snapshots", option));
+    entry.params.kind = config::Kind::map;
+    given = true;
+  }
+  if (!given)
+    throw ConfigError({option, 0, 0},
+                      "'" + composition.name + "' has no component that draws a map; add one of type " + draws);
 }
 
 /// 0 leaves it to the composition.
@@ -188,7 +209,9 @@ int run(const RunRequest& request) {
   const Duration limit = time_limit(request);
   const unsigned thread_count = threads(request);
   ComponentRegistry registry(component_folders());
-  const ResolvedComposition composition = prepare(request, registry);
+  const ResolvedComposition composition = prepare(request, registry, [&](composition::Composition& loaded) {
+    if (!request.snapshots.empty()) give_snapshots(loaded, request.snapshots);
+  });
   require_usable(composition);
   composition::containers_here(composition.source);  // refuses before anything is written
 

@@ -27,6 +27,7 @@ struct CompositionRequest {
 struct RunRequest : CompositionRequest {
   std::string time_limit;  ///< "60s"; empty for none
   std::string threads;     ///< "4"; empty: as the composition says
+  std::string snapshots;   ///< "5s"; empty: as the composition says
   std::string runs_folder = "runs";
 };
 
@@ -42,11 +43,12 @@ struct DescribeRequest {
 
 /// Something asked of a container that runs: `kervan container set brain r1/control speed="0.4 m/s"`.
 struct ContainerAsk {
-  std::string verb;                     ///< list, state, load, unload, activate, deactivate, set or snapshot
+  std::string verb;                     ///< list, state, load, unload, activate, deactivate, set, snapshot or call
   std::string container;                ///< empty for list
   std::string component;                ///< may be empty for state and snapshot
   std::string type;                     ///< load
-  std::vector<std::string> parameters;  ///< load, set: "name=value"
+  std::string request;                  ///< call
+  std::vector<std::string> parameters;  ///< load, set, call: "name=value"
   std::vector<std::string> ports;       ///< load: "port=/topic"
   std::string log_level;                ///< load
   std::string run;                      ///< the folder of the run; empty: the newest that is not over
@@ -58,6 +60,11 @@ struct ContainerAsk {
   bool json = false;
 };
 
+struct DrawRequest {
+  std::string world;  ///< a name or a file
+  std::string out;    ///< the picture's file; empty: <name>.svg
+};
+
 struct SystemdRequest : CompositionRequest {
   std::string out;  ///< folder for the units; empty: systemd-<composition>
 };
@@ -65,6 +72,7 @@ struct SystemdRequest : CompositionRequest {
 int run(const RunRequest& request);
 int check(const CheckRequest& request);
 int describe(const DescribeRequest& request);
+int draw(const DrawRequest& request);
 int systemd(const SystemdRequest& request);
 int container(const ContainerAsk& ask);
 

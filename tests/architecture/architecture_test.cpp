@@ -59,6 +59,9 @@ const std::vector<Arrow> arrows = {
 
     // The model knows manifests, not modules, and nothing that runs.
     {"deploy/composition/.*", {own_folder, "framework/component/", "framework/config/", "framework/geometry/"}},
+    // A picture of a world needs the world's reader and the drawing of a run's map, both plain libraries.
+    {"deploy/cli/draw\\.cpp",
+     {"deploy/", "framework/", "sim/files/world_file.hpp", "components/observe/map_drawing.hpp"}},
     {"deploy/cli/.*", {"deploy/", "framework/", messages}},
     // The supervisor writes what containers read, and reads what they write.
     {"deploy/supervisor/.*", {own_folder, "deploy/container/", "deploy/composition/", "framework/", messages}},

@@ -12,8 +12,11 @@
 #include "framework/test/harness.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "kervan_msgs/msg/Outline.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Path.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 #include "tests/component/plane_fixtures.hpp"
+#include "tf2_msgs/msg/TFMessage.hpp"
 
 namespace kervan::test {
 namespace {
@@ -26,6 +29,9 @@ class Script final : public Component {
   Output<nav_msgs::msg::Odometry> odom_{this, "r1/odom", qos::sensor, "Odometry."};
   Output<nav_msgs::msg::Path> route_{this, "r1/route", qos::latched, "Route."};
   Output<geometry_msgs::msg::PoseStamped> goal_{this, "r1/goal", qos::latched, "Goal."};
+  Output<kervan_msgs::msg::SonarArray> sonar_{this, "r1/sonar", qos::sensor, "Sonars."};
+  Output<sensor_msgs::msg::LaserScan> scan_{this, "r1/scan", qos::sensor, "Laser."};
+  Output<tf2_msgs::msg::TFMessage> tf_{this, "/tf", qos::event, "Where the laser is mounted."};
   Output<kervan_msgs::msg::Outline> world_{this, "world", qos::latched, "World."};
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "Result."};
   Timer tick_{this, 50ms, &Script::on_tick};
@@ -43,7 +49,10 @@ class Script final : public Component {
 
   void on_tick(Time now) {
     const double x = std::min(1.0, seconds(now));
-    truth_.publish(odometry_at({x, 0.0, 0.0}, {1.0, 0.0}));
+    auto truth = odometry_at({x, 0.0, 0.0}, {1.0, 0.0});
+    truth.header.stamp = geometry::to_message(now);
+    truth_.publish(truth);
+    sense(now);
     odom_.publish(odometry_at({x, 0.02, 0.0}));
     if (now < Time(2s)) return;
     kervan_msgs::msg::MissionResult result;
@@ -52,6 +61,32 @@ class Script final : public Component {
     result.robots[0].robot = "r1";
     result.robots[0].reached = true;
     result_.publish(result);
+  }
+
+  /// Every 0.2 s: a sonar that looks ahead and hears something at 2 m, one that hears nothing, and three beams to the
+  /// right of a laser 0.1 m ahead of the centre.
+  void sense(Time now) {
+    if (now.time_since_epoch() % 200ms != Duration::zero()) return;
+    tf2_msgs::msg::TFMessage tf;
+    tf.transforms.resize(1);
+    tf.transforms[0].header.frame_id = "r1/base_link";
+    tf.transforms[0].child_frame_id = "r1/laser";
+    tf.transforms[0].transform.translation.x = 0.1;
+    tf.transforms[0].transform.rotation.w = 1.0;
+    tf_.publish(tf);
+    kervan_msgs::msg::SonarArray sonar;
+    geometry::set_header(sonar.header, now, "r1/base_link");
+    sonar.field_of_view = 0.5f;
+    sonar.max_range = 5.0f;
+    sonar.readings = {{.x = 0.2f, .y = 0.0f, .yaw = 0.0f, .range = 2.0f},
+                      {.x = 0.0f, .y = 0.2f, .yaw = 1.5f, .range = std::numeric_limits<float>::infinity()}};
+    sonar_.publish(sonar);
+    sensor_msgs::msg::LaserScan scan;
+    geometry::set_header(scan.header, now, "r1/laser");
+    scan.angle_min = -1.5707964f;
+    scan.angle_increment = 0.1f;
+    scan.ranges = {1.0f, 1.0f, 1.0f};
+    scan_.publish(scan);
   }
 };
 
@@ -68,7 +103,7 @@ struct TemporaryFolder {
   ~TemporaryFolder() { std::filesystem::remove_all(path); }
 };
 
-void run(const std::filesystem::path& folder, Duration length) {
+void run(const std::filesystem::path& folder, Duration length, double snapshots = 0.0) {
   static const ComponentClass script = define<Script>("test/script");
   ComponentRegistry registry(ComponentRegistry::default_folders());
   registry.add(script);
@@ -81,7 +116,7 @@ void run(const std::filesystem::path& folder, Duration length) {
   spec.components = {{.name = "script", .type = "test/script", .parameters = {}, .ports = {}},
                      {.name = "report",
                       .type = "observe/map_report",
-                      .parameters = {{"robots", ValueList{"r1"}}, {"title", "lab"}},
+                      .parameters = {{"robots", ValueList{"r1"}}, {"title", "lab"}, {"snapshots", snapshots}},
                       .ports = {}}};
   runtime::Container container(spec, registry);
   container.activate();
@@ -114,6 +149,30 @@ TEST(MapReportComponent, MarksAnUnfinishedRunAsAborted) {
   const TemporaryFolder folder;
   run(folder.path, 1s);
   EXPECT_TRUE(has(content_of(folder.path / "map.svg"), ">aborted</tspan>"));
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (auto at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+TEST(MapReportComponent, ShowsWhatTheSensorsSawEverySoOften) {
+  const TemporaryFolder folder;
+  run(folder.path, 1500ms, 0.4);
+  const std::string map = content_of(folder.path / "map.svg");
+  for (const char* time : {">0 s<", ">0.4 s<", ">0.8 s<", ">1.2 s<"}) EXPECT_EQ(count(map, time), 1u) << time;
+  EXPECT_FALSE(has(map, ">0.2 s<"));
+  // Where the robot truly was: at 0.4 m, with the transducer 0.2 m ahead.
+  EXPECT_TRUE(has(map, "points=\"0.6000,0.0000 ")) << map;
+  EXPECT_TRUE(has(map, "points=\"0.5000,0.0000 0.5000,1.0000 ")) << "the sweep begins at the laser, to the right";
+  EXPECT_EQ(count(map, "fill-opacity=\"0.1\""), 2u * 4u + 1u) << "a cone and a sweep each time, and the legend";
+}
+
+TEST(MapReportComponent, ShowsNothingOfTheSensorsUnlessAskedTo) {
+  const TemporaryFolder folder;
+  run(folder.path, 1500ms);
+  EXPECT_EQ(count(content_of(folder.path / "map.svg"), "fill-opacity=\"0.1\""), 0u);
 }
 
 TEST(MapReportComponent, WritesNothingWithoutAFolder) {

@@ -95,14 +95,15 @@ TEST_F(Program, DescribesEveryComponent) {
 }
 
 TEST_F(Program, HelpsWithEveryVerb) {
-  for (const char* verb : {"", "run", "check", "describe"})
+  for (const char* verb : {"", "run", "check", "describe", "draw", "container", "systemd"})
     EXPECT_EQ(kervan(std::string(verb) + " --help").code, 0) << verb;
 }
 
 TEST_F(Program, RefusesInOneLineAndWritesNothing) {
-  expect_refused("", "a command is missing: run, check, describe, container, systemd; see kervan --help");
-  expect_refused("rnu lab",
-                 "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, container, systemd");
+  expect_refused("", "a command is missing: run, check, describe, draw, container, systemd; see kervan --help");
+  expect_refused(
+      "rnu lab",
+      "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd");
   expect_refused("run lba",
                  "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
@@ -115,6 +116,11 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "--place right=world: the component 'world' is already in the container 'left' (--place left=world); it "
       "can be in one only");
   expect_refused("run lab --for 60", "--for 60: 60 has no unit; write e.g. 60 s");
+  expect_refused("run lab --snapshots 5", "--snapshots 5: 5 has no unit; write e.g. 5 s");
+  expect_refused("run lab --snapshots 0s", "--snapshots 0s: the time must be longer than 0 s");
+  expect_refused("run lab --snapshots 90min",
+                 "--snapshots 90min: snapshots: 5400 s is out of range; allowed: 0 .. 3600 s");
+  expect_refused("run lab --snapshots", "kervan run: --snapshots: 1 required TIME missing; see kervan run --help");
   expect_refused("run lab --arg seed=-1", "--arg seed=-1: -1 is out of range; allowed: 0 .. 4294967295");
   expect_refused("run lab --arg drift=1", "--arg drift=1: 1 is out of range; allowed: 0 .. 0.5");
   expect_refused("run lab --arg controller=vfh",
@@ -134,6 +140,41 @@ TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {
                  (folder_ / "world.yaml").string() +
                      ":3:1: unknown key 'circlse'; did you mean 'circles'? allowed: kervan_world, name, segments, "
                      "circles, boxes, bitmaps, maps, low, moving");
+}
+
+TEST_F(Program, RefusesSnapshotsWhereNothingDrawsAMap) {
+  std::ofstream(folder_ / "c.yaml") << "kervan: 1\nname: c\ncomponents:\n  world: {type: sim/world, params: {map: "
+                                       "worlds/lab.yaml}}\n";
+  expect_refused("run c.yaml --snapshots 5s",
+                 "--snapshots 5s: 'c' has no component that draws a map; add one of type observe/map_report");
+}
+
+TEST_F(Program, DrawsAWorldByItsNameOrFile) {
+  const Result named = kervan("draw rods");
+  EXPECT_EQ(named.code, 0);
+  EXPECT_EQ(named.output, "rods.svg\n");
+  std::ofstream(folder_ / "mine.yaml") << "kervan_world: 1\nname: mine\nsegments: [[[0 m, 0 m], [1 m, 0 m]]]\n";
+  EXPECT_EQ(kervan("draw mine.yaml --out picture.svg").output, "picture.svg\n");
+  std::string text;
+  std::getline(std::ifstream(folder_ / "picture.svg"), text, '\0');
+  EXPECT_NE(text.find(">mine</tspan>"), std::string::npos);
+  EXPECT_NE(text.find("M0.0000,0.0000 L1.0000,0.0000"), std::string::npos);
+}
+
+TEST_F(Program, RefusesToDrawWhatIsNoWorld) {
+  expect_refused("draw",
+                 "kervan draw: a world is missing; name a shipped one, such as lab, or a file; see kervan draw "
+                 "--help");
+  expect_refused("draw other.yaml", "other.yaml: there is no such file");
+  expect_refused("draw lab --out nowhere/lab.svg", "nowhere/lab.svg: cannot be written");
+  std::ofstream(folder_ / "broken.yaml") << "kervan_world: 1\nname: lab\nwalls: []\n";
+  expect_refused("draw broken.yaml",
+                 "broken.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, "
+                 "boxes, bitmaps, maps");
+  const Result misspelt = kervan("draw ofice");
+  EXPECT_EQ(misspelt.code, 2);
+  EXPECT_TRUE(misspelt.output.starts_with("there is no world 'ofice'; did you mean 'office'? there are: corner_180, "))
+      << misspelt.output;
 }
 
 TEST_F(Program, RefusesARobotThatStandsInAWall) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <numbers>
 
 #include "components/observe/decimal.hpp"
 #include "components/observe/map_drawing.hpp"
@@ -91,6 +92,63 @@ TEST(MapDrawing, IsAValidPictureOfNothing) {
 }
 
 TEST(MapDrawing, IsTheSameForTheSameRun) { EXPECT_EQ(to_svg(small_run()), to_svg(small_run())); }
+
+TEST(MapDrawing, ShowsWhatTheSensorsSawWithTheTimeBesideIt) {
+  MapDrawing drawing = small_run();
+  EXPECT_FALSE(has(to_svg(drawing), "seen by its sensors"));
+  drawing.robots[0].snapshots = {{0.0, {1.0, 1.0, 0.0}, {{{1.0, 1.0}, {3.0, 1.5}, {3.0, 0.5}}}},
+                                 {2.5, {2.0, 1.0, 0.0}, {{{2.0, 1.0}, {nan, 1.5}}}}};
+  const std::string svg = to_svg(drawing);
+  EXPECT_TRUE(has(svg, ">0 s</text>"));
+  EXPECT_TRUE(has(svg, ">2.5 s</text>"));
+  EXPECT_TRUE(
+      has(svg, "points=\"1.0000,-1.0000 3.0000,-1.5000 3.0000,-0.5000 \" fill=\"#1769aa\" fill-opacity=\"0.1\""));
+  EXPECT_TRUE(has(svg, "seen by its sensors"));
+  EXPECT_FALSE(has(svg, "nan"));
+}
+
+TEST(MapDrawing, WithoutRobotsIsAPictureOfTheWorldWithoutALegend) {
+  MapDrawing drawing = small_run();
+  drawing.robots.clear();
+  const std::string svg = to_svg(drawing);
+  EXPECT_TRUE(has(svg, "M32.0000,1.5000 L32.0000,-17.5000"));
+  EXPECT_FALSE(has(svg, "driven"));
+}
+
+TEST(Snapshot, AConeReachesFromTheTransducerToTheArcOfItsRange) {
+  const double fov = 0.5;
+  const Polyline area = cone({1.0, 2.0, std::numbers::pi / 2.0}, fov, 3.0);
+  ASSERT_GE(area.size(), 3u);
+  EXPECT_EQ(area.front(), Vector2(1.0, 2.0));
+  for (std::size_t i = 1; i < area.size(); ++i) EXPECT_NEAR((area[i] - area[0]).norm(), 3.0, 1e-12);
+  EXPECT_NEAR(area[1].x(), 1.0 + 3.0 * std::sin(0.25), 1e-12) << "from the right, seen along its axis,";
+  EXPECT_NEAR(area.back().x(), 1.0 - 3.0 * std::sin(0.25), 1e-12) << "to the left";
+  for (const double silent : {0.0, -1.0, nan, std::numeric_limits<double>::infinity()})
+    EXPECT_TRUE(cone({}, fov, silent).empty()) << silent;
+}
+
+TEST(Snapshot, ASweepIsBrokenWhereABeamMetNothing) {
+  constexpr float none = std::numeric_limits<float>::infinity();
+  const std::vector<float> ranges{2.0f, 2.0f, none, 1.0f, 1.0f, 1.0f, -none, 3.0f};
+  const auto areas = sweep({1.0, 0.0, 0.0}, -0.2, 0.1, ranges);
+  ASSERT_EQ(areas.size(), 2u) << "one beam alone is no area";
+  ASSERT_EQ(areas[0].size(), 3u);
+  EXPECT_EQ(areas[0][0], Vector2(1.0, 0.0));
+  EXPECT_NEAR(areas[0][1].y(), 2.0 * std::sin(-0.2), 1e-12);
+  EXPECT_NEAR(areas[1][1].y(), std::sin(0.1), 1e-12);
+  EXPECT_TRUE(sweep({}, 0.0, 0.1, {}).empty());
+}
+
+TEST(Snapshot, ABodyIsMovedBackAlongItsArc) {
+  const auto straight = moved_back({5.0, 1.0, 0.0}, {0.5, 0.0}, 2.0);
+  EXPECT_NEAR(straight.x, 4.0, 1e-12);
+  EXPECT_NEAR(straight.y, 1.0, 1e-12);
+  // A quarter of a circle of radius 1 around (0, 1), from (0, 0).
+  const auto curved = moved_back({1.0, 1.0, std::numbers::pi / 2.0}, {1.0, 1.0}, std::numbers::pi / 2.0);
+  EXPECT_NEAR(curved.x, 0.0, 1e-12);
+  EXPECT_NEAR(curved.y, 0.0, 1e-12);
+  EXPECT_NEAR(curved.yaw, 0.0, 1e-12);
+}
 
 TEST(Simplified, KeepsCornersAndDropsWhatLiesOnALine) {
   const Polyline line{{0, 0}, {1, 0.001}, {2, 0}, {2, 1}, {2, 2}};
