@@ -98,14 +98,16 @@ ContainerRequest request_of(const ContainerAsk& ask) {
       {"state", ContainerVerb::CONTAINER_STATE},       {"load", ContainerVerb::CONTAINER_LOAD},
       {"unload", ContainerVerb::CONTAINER_UNLOAD},     {"activate", ContainerVerb::CONTAINER_ACTIVATE},
       {"set", ContainerVerb::CONTAINER_SET},           {"deactivate", ContainerVerb::CONTAINER_DEACTIVATE},
-      {"snapshot", ContainerVerb::CONTAINER_SNAPSHOT},
+      {"snapshot", ContainerVerb::CONTAINER_SNAPSHOT}, {"call", ContainerVerb::CONTAINER_CALL},
   };
   ContainerRequest request;
   request.verb = verbs.at(ask.verb);
   request.component = ask.component;
   request.type = ask.type;
+  request.request = ask.request;
   request.log_level = ask.log_level;
-  request.parameters = named_texts(ask.parameters, "value of a parameter", "speed=\"0.4 m/s\"");
+  request.parameters = ask.verb == "call" ? named_texts(ask.parameters, "value of an argument", "robot=r1")
+                                          : named_texts(ask.parameters, "value of a parameter", "speed=\"0.4 m/s\"");
   request.ports = named_texts(ask.ports, "topic of a port", "odom=/r1/odom");
   return request;
 }

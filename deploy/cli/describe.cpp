@@ -29,7 +29,10 @@ std::string allowed(const ParameterInfo& info) {
   return to_text(Value(info.min)) + " .. " + to_text(Value(info.max));
 }
 
-std::string default_of(const ParameterInfo& info) { return info.required ? "required" : to_text(info.default_value); }
+std::string default_of(const ParameterInfo& info) {
+  if (info.required) return "required";
+  return info.default_value.empty() ? "" : to_text(info.default_value);
+}
 
 void add_parameters(const std::vector<ParameterInfo>& parameters, const std::string& prefix,
                     std::vector<std::vector<std::string>>& rows) {
@@ -38,6 +41,16 @@ void add_parameters(const std::vector<ParameterInfo>& parameters, const std::str
                     info.help + (info.live ? " (may change while running)" : "")});
     add_parameters(info.members, prefix + info.name + ".*.", rows);
   }
+}
+
+/// A row for each request, and below it one for each of its arguments.
+std::vector<std::vector<std::string>> request_rows(const std::vector<RequestInfo>& requests) {
+  std::vector<std::vector<std::string>> rows;
+  for (const RequestInfo& request : requests) {
+    rows.push_back({request.name, "", "", "", "", request.help});
+    add_parameters(request.arguments, request.name + " ", rows);
+  }
+  return rows;
 }
 
 std::string requirements(const PortInfo& port) {
@@ -133,6 +146,12 @@ void print(const Description& description) {
     std::cout << '\n';
     print_table(std::cout, rows, "  ");
   }
+  rows = {{"request", "kind", "unit", "default", "allowed", ""}};
+  for (auto& row : request_rows(manifest.requests)) rows.push_back(std::move(row));
+  if (rows.size() > 1) {
+    std::cout << '\n';
+    print_table(std::cout, rows, "  ");
+  }
   for (const std::string& parameter : description.per_name)
     std::cout << "\n  The ports " << example_name << "/… are there once for each name in " << parameter << ".\n";
 }
@@ -169,15 +188,20 @@ void print_markdown(const Description& description) {
     rows.push_back({code(port.name), to_text(port.direction), code(port.type), requirements(port), cell(port.help)});
   if (rows.size() > 2) print_rows(rows);
 
+  bool first = rows.size() <= 2;
+  const auto print_values = [&](const char* what, const std::vector<std::vector<std::string>>& values) {
+    if (values.empty()) return;
+    if (!std::exchange(first, false)) std::cout << '\n';
+    rows = {{what, "kind", "unit", "default", "allowed", "help"}, {"---", "---", "---", "---", "---", "---"}};
+    for (const auto& row : values)
+      rows.push_back({code(row[0]), cell(row[1]), row[2], row[3] == "required" ? row[3] : code(row[3]), cell(row[4]),
+                      cell(row[5])});
+    print_rows(rows);
+  };
   std::vector<std::vector<std::string>> parameters;
   add_parameters(description.manifest.parameters, "", parameters);
-  if (parameters.empty()) return;
-  if (rows.size() > 2) std::cout << '\n';
-  rows = {{"parameter", "kind", "unit", "default", "allowed", "help"}, {"---", "---", "---", "---", "---", "---"}};
-  for (const auto& row : parameters)
-    rows.push_back(
-        {code(row[0]), cell(row[1]), row[2], row[3] == "required" ? row[3] : code(row[3]), cell(row[4]), cell(row[5])});
-  print_rows(rows);
+  print_values("parameter", parameters);
+  print_values("request", request_rows(description.manifest.requests));
 }
 
 ordered_json json_of(const Value& value) {
@@ -233,6 +257,10 @@ ordered_json json_of(const Manifest& manifest) {
     if (port.qos.deadline() != forever) info["deadline_s"] = seconds(port.qos.deadline());
     object["ports"].push_back(std::move(info));
   }
+  object["requests"] = ordered_json::array();
+  for (const RequestInfo& request : manifest.requests)
+    object["requests"].push_back(
+        {{"name", request.name}, {"help", request.help}, {"arguments", json_of(request.arguments)}});
   object["timers"] = ordered_json::array();
   for (const TimerInfo& timer : manifest.timers) object["timers"].push_back({{"period_s", seconds(timer.period)}});
   object["own_thread"] = manifest.own_thread;

@@ -34,6 +34,7 @@ bool is_scalar(ParameterKind kind) {
 }  // namespace
 
 std::string to_parameter_text(const ParameterInfo& info, const Value& value) {
+  if (value.empty()) return {};
   switch (info.kind) {
     case ParameterKind::number: return with_unit(value, info.unit);
     case ParameterKind::duration: return with_unit(value, "s");

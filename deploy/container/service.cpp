@@ -99,8 +99,9 @@ ContainerReply ContainerService::carry_out(const ContainerRequest& request) {
   operations.set_patience(from_seconds(std::clamp(0.8 * request.timeout, 0.0, 60.0)));
   const bool of_all = request.component.empty() && (request.verb == ContainerVerb::CONTAINER_STATE ||
                                                     request.verb == ContainerVerb::CONTAINER_SNAPSHOT);
-  const bool looks =
-      request.verb == ContainerVerb::CONTAINER_STATE || request.verb == ContainerVerb::CONTAINER_SNAPSHOT;
+  const bool survives = request.verb != ContainerVerb::CONTAINER_STATE &&
+                        request.verb != ContainerVerb::CONTAINER_SNAPSHOT &&
+                        request.verb != ContainerVerb::CONTAINER_CALL;
   Outcome outcome;
   switch (request.verb) {
     case ContainerVerb::CONTAINER_STATE:
@@ -115,8 +116,9 @@ ContainerReply ContainerService::carry_out(const ContainerRequest& request) {
     case ContainerVerb::CONTAINER_ACTIVATE: outcome = operations.activate(request.component); break;
     case ContainerVerb::CONTAINER_DEACTIVATE: outcome = operations.deactivate(request.component); break;
     case ContainerVerb::CONTAINER_SET: outcome = set(request); break;
+    case ContainerVerb::CONTAINER_CALL: outcome = call(request); break;
   }
-  if (outcome.accepted && !looks && changed_) {
+  if (outcome.accepted && survives && changed_) {
     try {
       changed_();
     } catch (const std::exception& error) {
@@ -164,6 +166,16 @@ Outcome ContainerService::set(const ContainerRequest& request) {
   for (const auto& parameter : container_.operations().parameters(request.component)) schema.push_back(parameter.info);
   try {
     return container_.operations().change_parameters(request.component, values_of(request.parameters, schema));
+  } catch (const ParameterError& error) {
+    return {false, error.what()};
+  }
+}
+
+Outcome ContainerService::call(const ContainerRequest& request) {
+  runtime::Operations& operations = container_.operations();
+  try {
+    return operations.call(request.component, request.request,
+                           values_of(request.parameters, operations.arguments(request.component, request.request)));
   } catch (const ParameterError& error) {
     return {false, error.what()};
   }

@@ -52,6 +52,7 @@ class ContainerService final : public dds::SampleSink {
   Reply carry_out(const Request& request);
   runtime::Outcome load(const Request& request);
   runtime::Outcome set(const Request& request);
+  runtime::Outcome call(const Request& request);
   void describe(const std::string& component, Reply& reply) const;
   void add_parameters(const std::string& component, Reply& reply) const;
   void publish(const Reply& reply);

@@ -142,6 +142,11 @@ Timer::Timer(Component* owner, Duration period, std::function<void(Time)> handle
   owner->timers_.push_back(this);
 }
 
+RequestBase::RequestBase(Component* owner, RequestInfo info, Handler handler)
+    : info_(std::move(info)), handler_(std::move(handler)) {
+  owner->requests_.push_back(this);
+}
+
 std::unique_ptr<Component> construct(const ComponentClass& type, const ComponentSetup& setup) {
   struct Scope {
     const ComponentSetup* outer;
@@ -164,6 +169,7 @@ Manifest describe(const ComponentClass& type, const ValueMap& parameters) {
   manifest.parameters = component->schema_;
   for (const PortInfo* port : component->ports_) manifest.ports.push_back(*port);
   for (const Timer* timer : component->timers_) manifest.timers.push_back({timer->period()});
+  for (const RequestBase* request : component->requests_) manifest.requests.push_back(request->info());
   manifest.own_thread = component->own_thread_;
   return manifest;
 }

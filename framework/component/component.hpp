@@ -10,6 +10,7 @@
 #include "framework/component/manifest.hpp"
 #include "framework/component/parameters.hpp"
 #include "framework/component/ports.hpp"
+#include "framework/component/request.hpp"
 
 namespace spdlog {
 class logger;
@@ -101,6 +102,7 @@ class Component {
   friend class InputBase;
   friend class OutputBase;
   friend class Timer;
+  friend class RequestBase;
   friend class runtime::ComponentInstance;
   friend Manifest describe(const struct ComponentClass& type, const ValueMap& parameters);
 
@@ -118,6 +120,7 @@ class Component {
   std::vector<InputBase*> inputs_;
   std::vector<OutputBase*> outputs_;
   std::vector<Timer*> timers_;
+  std::vector<RequestBase*> requests_;
   std::vector<PortInfo*> ports_;  ///< inputs and outputs in order of declaration
   bool own_thread_ = false;
   ComponentState state_ = ComponentState::configured;

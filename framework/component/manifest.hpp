@@ -26,15 +26,22 @@ struct TimerInfo {
   Duration period{};
 };
 
-/// Obtained by constructing the component and reading what its members declared; no DDS, no running component. Ports may
-/// depend on the parameters, so a manifest belongs to a type and the values it was constructed with.
+struct RequestInfo {
+  std::string name;
+  std::vector<ParameterInfo> arguments;
+  std::string help;
+};
+
+/// Obtained by constructing the component and reading what its members declared; no DDS, no running component. Ports
+/// may depend on the parameters, so a manifest belongs to a type and the values it was constructed with.
 struct Manifest {
   std::string type;  ///< "control/potential_field"
   std::string help;
   std::vector<ParameterInfo> parameters;
   std::vector<PortInfo> ports;  ///< in order of declaration
   std::vector<TimerInfo> timers;
-  bool own_thread = false;  ///< its handlers block, so it gets a thread of its own
+  std::vector<RequestInfo> requests;  ///< in order of declaration
+  bool own_thread = false;            ///< its handlers block, so it gets a thread of its own
 
   const PortInfo* port(const std::string& name) const;
   const ParameterInfo* parameter(const std::string& name) const;

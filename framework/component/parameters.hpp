@@ -93,6 +93,12 @@ struct is_records : std::false_type {};
 template <class T>
 struct is_records<std::map<std::string, T>> : std::true_type {};
 
+/// A parameter that may be left out, and then is not there: std::optional of another type.
+template <class T>
+struct is_optional : std::false_type {};
+template <class T>
+struct is_optional<std::optional<T>> : std::true_type {};
+
 using IndexPair = std::pair<std::int64_t, std::int64_t>;
 
 Value to_value(bool v);
@@ -121,7 +127,9 @@ void from_value(const Value& value, std::vector<IndexPair>& v);
 
 template <class T>
 constexpr ParameterKind kind_of() {
-  if constexpr (std::is_same_v<T, bool>)
+  if constexpr (is_optional<T>::value)
+    return kind_of<typename T::value_type>();
+  else if constexpr (std::is_same_v<T, bool>)
     return ParameterKind::boolean;
   else if constexpr (std::is_same_v<T, std::int64_t>)
     return ParameterKind::integer;
@@ -160,7 +168,10 @@ class SchemaVisitor {
   void operator()(T& field, const char* name, const ParameterSpec& spec) {
     ParameterInfo info{name,      kind_of<T>(),  spec.unit, spec.min, spec.max, spec.choices,
                        spec.help, spec.required, spec.live, Value(),  {}};
-    if constexpr (kind_of<T>() == ParameterKind::records) {
+    if constexpr (is_optional<T>::value) {
+      static_assert(kind_of<T>() != ParameterKind::records && kind_of<T>() != ParameterKind::choice);
+      if (field) info.default_value = to_value(*field);
+    } else if constexpr (kind_of<T>() == ParameterKind::records) {
       typename T::mapped_type record;
       SchemaVisitor members;
       record.describe(members);
@@ -184,7 +195,9 @@ class LoadVisitor {
   void operator()(T& field, const char* name, const ParameterSpec& spec) {
     const auto found = values_.find(name);
     if (found == values_.end() || found->second.empty()) return;
-    if constexpr (kind_of<T>() == ParameterKind::records) {
+    if constexpr (is_optional<T>::value) {
+      from_value(found->second, field.emplace());
+    } else if constexpr (kind_of<T>() == ParameterKind::records) {
       field.clear();
       for (const auto& [key, members] : std::get<ValueMap>(found->second)) {
         LoadVisitor load(std::get<ValueMap>(members));

@@ -135,6 +135,21 @@ std::optional<std::string> ComponentInstance::change_parameters(const ValueMap& 
   return refused;
 }
 
+Outcome ComponentInstance::call(const RequestBase& request, const ValueMap& arguments, Instant now) {
+  Outcome outcome;
+  guarded("a request", now, [&] {
+    try {
+      outcome = {true, request.answer(arguments, now.time)};
+    } catch (const ParameterError& error) {
+      outcome.reason = error.what();
+    } catch (const RequestRefused& refused) {
+      outcome.reason = refused.what();
+    }
+  });
+  if (state() == ComponentState::failed) return {false, "it failed: " + reason()};
+  return outcome;
+}
+
 void ComponentInstance::shutdown(Instant now) {
   const bool was_running = running();
   guarded("on_shutdown", now, [&] { component_->on_shutdown(now.time); });

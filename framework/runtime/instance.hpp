@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/component/component.hpp"
+#include "framework/runtime/outcome.hpp"
 #include "framework/runtime/ports.hpp"
 #include "framework/runtime/spec.hpp"
 
@@ -58,6 +59,9 @@ class ComponentInstance {
   void stop(std::string why);
   /// Why the change was refused; nothing if all of it was made.
   std::optional<std::string> change_parameters(const ValueMap& changes, Instant now);
+  /// What the component answers to a request that it declares.
+  Outcome call(const RequestBase& request, const ValueMap& arguments, Instant now);
+  const std::vector<RequestBase*>& requests() const { return component_->requests_; }
   const std::vector<ParameterInfo>& schema() const { return component_->schema_; }
   const ValueMap& values() const { return component_->values_; }  ///< those that were given, at first or later
   void shutdown(Instant now);

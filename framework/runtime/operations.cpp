@@ -340,6 +340,36 @@ Outcome Operations::change_parameters(const std::string& name, const ValueMap& c
   });
 }
 
+Outcome Operations::call(const std::string& name, const std::string& request, const ValueMap& arguments) {
+  return attempt([&]() -> std::string {
+    ComponentInstance& instance = find(name);
+    std::vector<std::string> names;
+    const RequestBase* wanted = nullptr;
+    for (const RequestBase* one : instance.requests()) {
+      names.push_back(one->info().name);
+      if (one->info().name == request) wanted = one;
+    }
+    if (!wanted)
+      throw Refused{in_quotes(name) + " has no request " + in_quotes(request) + hint(request, names, "it has")};
+    hold(instance);
+    Outcome outcome;
+    if (instance.running())
+      outcome = instance.call(*wanted, arguments, container_.present());
+    else
+      outcome.reason = in_quotes(name) + " does not run, it is " + std::string(to_text(instance.state()));
+    release(instance);
+    if (!outcome.accepted) throw Refused{outcome.reason};
+    return outcome.reason;
+  });
+}
+
+std::vector<ParameterInfo> Operations::arguments(const std::string& name, const std::string& request) const {
+  if (const ComponentInstance* instance = container_.find(name))
+    for (const RequestBase* one : instance->requests())
+      if (one->info().name == request) return one->info().arguments;
+  return {};
+}
+
 std::vector<ParameterState> Operations::parameters(const std::string& name) const {
   std::vector<ParameterState> states;
   const ComponentInstance* instance = container_.find(name);

@@ -1,6 +1,6 @@
-/// What can be asked of a container while it runs: load and unload components, stop and start them, change parameters.
-/// All of it happens between two handlers of the component concerned, and under lockstep between two logical times. The
-/// others run on. What is refused changes nothing.
+/// What can be asked of a container while it runs: load and unload components, stop and start them, change parameters,
+/// and what the components themselves declare as requests. All of it happens between two handlers of the component
+/// concerned, and under lockstep between two logical times. The others run on. What is refused changes nothing.
 ///
 /// The functions that do something are for the thread that is in Container::run(), which calls what was post()ed, and,
 /// while nobody is in there, for the thread that owns the container.
@@ -18,18 +18,13 @@
 #include <vector>
 
 #include "framework/component/registry.hpp"
+#include "framework/runtime/outcome.hpp"
 #include "framework/runtime/spec.hpp"
 
 namespace kervan::runtime {
 
 class ComponentInstance;
 class Container;
-
-/// What became of a request. Asking for what is so already is accepted.
-struct Outcome {
-  bool accepted = false;
-  std::string reason;  ///< why not, or in what way ("already active"); one sentence, may be empty when accepted
-};
 
 /// A parameter of a component that runs, with its present value.
 struct ParameterState {
@@ -64,6 +59,11 @@ class Operations {
   Outcome deactivate(const std::string& name);
   /// All of `changes` or none.
   Outcome change_parameters(const std::string& name, const ValueMap& changes);
+
+  /// A request that the component declares; its answer is the reason of the outcome.
+  Outcome call(const std::string& name, const std::string& request, const ValueMap& arguments);
+  /// The arguments of a request; none if there is no such component or request.
+  std::vector<ParameterInfo> arguments(const std::string& name, const std::string& request) const;
 
   /// In order of declaration. The component must be there.
   std::vector<ParameterState> parameters(const std::string& name) const;

@@ -128,6 +128,12 @@ void Harness::change_parameters(const ValueMap& changes) {
   if (!outcome.accepted) throw std::invalid_argument(outcome.reason);
 }
 
+std::string Harness::call(const std::string& request, const ValueMap& arguments) {
+  const auto outcome = impl_->container->operations().call(impl_->subject->name(), request, arguments);
+  if (!outcome.accepted) throw std::invalid_argument(outcome.reason);
+  return outcome.reason;
+}
+
 void Harness::advance(Duration duration) { impl_->container->advance(now() + duration); }
 
 const void* Harness::latest(const std::string& output, const TypeSupport& type) const {

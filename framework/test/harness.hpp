@@ -44,6 +44,10 @@ class Harness {
   /// refusal.
   void change_parameters(const ValueMap& changes);
 
+  /// Asks the component what it declares as a request, as a request to its container does. Returns its answer; throws
+  /// std::invalid_argument with the reason of a refusal.
+  std::string call(const std::string& request, const ValueMap& arguments = {});
+
   /// Handles everything at the present time, then every timer and sample up to `duration` later.
   void advance(Duration duration);
 

@@ -93,10 +93,11 @@ TEST(ContainerVerbUsage, IsNamedWhenItIsWrong) {
   EXPECT_EQ(says("list --domain 900"), "--domain 900: 900 is out of range; allowed: 0 .. 232\n");
   EXPECT_EQ(says("set brain r1/control speed --domain 3"),
             "'speed' is no value of a parameter; write e.g. speed=\"0.4 m/s\"\n");
-  EXPECT_EQ(
-      says(""),
-      "kervan container: what to ask is missing: list, state, load, unload, activate, deactivate, set or snapshot; "
-      "see kervan container --help\n");
+  EXPECT_EQ(says("call sim world spawn r2 --domain 3"), "'r2' is no value of an argument; write e.g. robot=r1\n");
+  EXPECT_EQ(says(""),
+            "kervan container: what to ask is missing: list, state, load, unload, activate, deactivate, set, call or "
+            "snapshot; "
+            "see kervan container --help\n");
 }
 
 }  // namespace

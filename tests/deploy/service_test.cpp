@@ -116,6 +116,25 @@ TEST_F(Service, ChangesParametersAndShowsTheNewValues) {
   EXPECT_EQ(changes_, 1);
 }
 
+TEST_F(Service, PutsWhatAComponentDeclaresAsRequestsToIt) {
+  ContainerRequest call = request(ContainerVerb::CONTAINER_CALL, "talker");
+  call.request = "say";
+  call.parameters = {{.name = "what", .text = "hello"}, {.name = "volume", .text = "20 cm"}};
+  const ContainerReply reply = ask(call);
+  EXPECT_EQ(text(reply), "yes: said at 0 s over 0.2 m");
+  ASSERT_EQ(reply.components.size(), 1u);
+  EXPECT_EQ(reply.components[0].name, "talker");
+  EXPECT_EQ(text(ask(call)), "yes: said at 0 s over 0.2 m") << "the same id: the same answer";
+  EXPECT_EQ(container_.find("talker")->outputs().front()->published(), 1u) << "and no second effect";
+  EXPECT_EQ(changes_, 0) << "nothing of it is to survive a restart";
+  call.id = kervan::container::new_request_id();
+  call.parameters[1].text = "20";
+  EXPECT_EQ(text(ask(call)), "no: volume: 20 has no unit; write e.g. 20 m");
+  call.id = kervan::container::new_request_id();
+  call.request = "shout";
+  EXPECT_EQ(text(ask(call)), "no: 'talker' has no request 'shout'; it has: say, count");
+}
+
 TEST_F(Service, LoadsWithParametersPortsAndALevel) {
   ContainerRequest load = request(ContainerVerb::CONTAINER_LOAD, "second");
   load.type = "test/talker";

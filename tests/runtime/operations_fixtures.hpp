@@ -2,6 +2,8 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -28,11 +30,25 @@ struct TalkerParams {
   }
 };
 
+struct SayArguments {
+  std::string what;
+  std::int64_t times = 1;
+  std::optional<double> volume;
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(what, "what", {.help = "The words.", .required = true});
+    v(times, "times", {.min = 1, .max = 3, .help = "How often."});
+    v(volume, "volume", {.unit = "m", .min = 0.0, .help = "How far it is to be heard; else as far as it goes."});
+  }
+};
+
 /// Counts aloud, and says so when it ends.
 class Talker final : public Component {
   const TalkerParams& params_ = parameters<TalkerParams>();
   Output<Words> out_{this, "out", qos::event, "What it says."};
   Timer tick_{this, params_.period, &Talker::on_tick};
+  Request<SayArguments> say_{this, "say", &Talker::on_say, "Says something once more than it would."};
+  Request<NoArguments> count_request_{this, "count", &Talker::on_count, "How far it has counted."};
   int count_ = 0;
 
   void say(const std::string& text) {
@@ -44,6 +60,14 @@ class Talker final : public Component {
     if (params_.word == "fail") throw std::runtime_error("told to");
     say(params_.word + " " + std::to_string(count_++));
   }
+  std::string on_say(const SayArguments& arguments, Time now) {
+    if (arguments.what == "nothing") throw RequestRefused("there is nothing to say");
+    if (arguments.what == "fail") throw std::runtime_error("told to");
+    for (std::int64_t i = 0; i < arguments.times; ++i) say(arguments.what);
+    const std::string far = arguments.volume ? " over " + to_text(Value(*arguments.volume)) + " m" : "";
+    return "said at " + to_text(Value(seconds(now))) + " s" + far;
+  }
+  std::string on_count(const NoArguments&, Time) { return std::to_string(count_); }
   void on_deactivate(Time) override { say("last words of " + params_.word); }
 };
 

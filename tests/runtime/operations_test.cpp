@@ -50,6 +50,39 @@ TEST_F(LockstepOperations, AComponentIsLoadedAndRunsFromThenOn) {
                                                        "extra 1", "talker 4", "extra 2"}));
 }
 
+TEST_F(LockstepOperations, AComponentAnswersWhatItDeclaresAtTheNextLogicalTime) {
+  advance(20ms);
+  Listener::heard.clear();
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "hello"}, {"times", 2}})), "yes: said at 0.02 s");
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "far"}, {"volume", 7.5}})), "yes: said at 0.02 s over 7.5 m");
+  EXPECT_EQ(text(ask().call("talker", "count", {})), "yes: 3");
+  advance(10ms);
+  EXPECT_EQ(Listener::heard, (std::vector<std::string>{"hello", "hello", "far", "talker 3"}));
+}
+
+TEST_F(LockstepOperations, ARequestThatCannotBeSaysWhy) {
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "nothing"}})), "no: there is nothing to say");
+  EXPECT_EQ(text(ask().call("talker", "say", {})), "no: what: is missing: The words.");
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "x"}, {"times", 4}})),
+            "no: times: 4 is out of range; allowed: 1 .. 3");
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "x"}, {"volume", -1.0}})),
+            "no: volume: -1 m is out of range; allowed: at least 0 m");
+  EXPECT_EQ(text(ask().call("talker", "say", {{"waht", "x"}})),
+            "no: waht: there is no such parameter; did you mean 'what'? allowed: what, times, volume");
+  EXPECT_EQ(text(ask().call("talker", "sya", {})),
+            "no: 'talker' has no request 'sya'; did you mean 'say'? it has: say, count");
+  EXPECT_EQ(text(ask().call("listener", "say", {})), "no: 'listener' has no request 'say'; it has: none");
+  EXPECT_EQ(text(ask().call("nobody", "say", {})),
+            "no: there is no component 'nobody' in container 'main'; there are: talker, listener, latched");
+  EXPECT_EQ(state("talker"), ComponentState::active);
+}
+
+TEST_F(LockstepOperations, ARequestThatThrowsFailsTheComponentAndOneThatDoesNotRunAnswersNothing) {
+  EXPECT_EQ(text(ask().call("talker", "say", {{"what", "fail"}})), "no: it failed: told to (in a request)");
+  EXPECT_EQ(state("talker"), ComponentState::failed);
+  EXPECT_EQ(text(ask().call("talker", "count", {})), "no: 'talker' does not run, it is failed");
+}
+
 TEST_F(LockstepOperations, ALateJoinerGetsWhatIsLatched) {
   advance(10ms);
   EXPECT_EQ(text(ask().load({.name = "late", .type = "test/listener", .ports = {{.port = "in", .topic = "/latched"}}})),
