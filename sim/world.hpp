@@ -82,6 +82,7 @@ class World {
   std::span<const Circle> circles() const { return tall_.circles(); }
   std::span<const Box> boxes() const { return tall_.boxes(); }
   std::span<const CellMap> bitmaps() const { return bitmaps_; }
+  const Solids& tall() const { return tall_; }
   const Solids& low() const { return low_; }
   std::span<const MovingObstacle> moving() const { return moving_; }
 

@@ -32,17 +32,29 @@ fs::path find_world(const std::string& name_or_file) {
                             config::hint(name_or_file, {known.begin(), known.end()}, "there are"));
 }
 
-observe::DrawnWorld drawn(const sim::World& world) {
-  observe::DrawnWorld drawn;
-  const auto add = [&](std::span<const sim::Segment> segments) {
-    for (const sim::Segment& segment : segments) drawn.walls.push_back({segment.a, segment.b});
-  };
-  add(world.segments());
-  for (const sim::CellMap& map : world.bitmaps()) add(map.edges().segments());
-  for (const sim::Circle& circle : world.circles()) drawn.circles.push_back({circle.center, circle.radius});
-  for (const sim::Box& box : world.boxes()) {
+void add(std::span<const sim::Segment> segments, observe::DrawnWorld& drawn) {
+  for (const sim::Segment& segment : segments) drawn.walls.push_back({segment.a, segment.b});
+}
+
+void add(const sim::Solids& solids, observe::DrawnWorld& drawn) {
+  add(solids.segments(), drawn);
+  for (const sim::Circle& circle : solids.circles()) drawn.circles.push_back({circle.center, circle.radius});
+  for (const sim::Box& box : solids.boxes()) {
     const auto corners = sim::corners(box);
     drawn.polygons.emplace_back(corners.begin(), corners.end());
+  }
+}
+
+/// What moves is drawn where it is at the start.
+observe::DrawnWorld drawn(const sim::World& world) {
+  observe::DrawnWorld drawn;
+  add(world.tall(), drawn);
+  add(world.low(), drawn);
+  for (const sim::CellMap& map : world.bitmaps()) add(map.edges().segments(), drawn);
+  for (const sim::MovingObstacle& obstacle : world.moving()) {
+    observe::Polyline corners;
+    for (const auto& corner : obstacle.outline.corners()) corners.push_back(obstacle.path.front().pose * corner);
+    drawn.polygons.push_back(std::move(corners));
   }
   return drawn;
 }
@@ -50,14 +62,15 @@ observe::DrawnWorld drawn(const sim::World& world) {
 /// "23 walls, 3 discs, 18 boxes", without what there is none of.
 std::string contents(const sim::World& world) {
   std::string text;
-  const auto add = [&](std::size_t count, const char* one, const char* many) {
-    if (count == 0) return;
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + ' ' + (count == 1 ? one : many);
+  const auto count = [&](std::size_t number, const char* one, const char* many) {
+    if (number == 0) return;
+    text += (text.empty() ? "" : ", ") + std::to_string(number) + ' ' + (number == 1 ? one : many);
   };
-  add(world.segments().size(), "wall", "walls");
-  add(world.circles().size(), "disc", "discs");
-  add(world.boxes().size(), "box", "boxes");
-  add(world.bitmaps().size(), "bitmap", "bitmaps");
+  count(world.segments().size() + world.low().segments().size(), "wall", "walls");
+  count(world.circles().size() + world.low().circles().size(), "disc", "discs");
+  count(world.boxes().size() + world.low().boxes().size(), "box", "boxes");
+  count(world.bitmaps().size(), "bitmap", "bitmaps");
+  count(world.moving().size(), "moving obstacle", "moving obstacles");
   return text.empty() ? "empty" : text;
 }
 

@@ -19,6 +19,7 @@ struct RobotParams {
 
   FilePath model;
   Pose2 start;
+  bool present = true;
   OdometrySource odometry_errors = OdometrySource::given;
   double drift = 0.0;
   double wheel_error = 0.0;
@@ -51,6 +52,7 @@ struct RobotParams {
   void describe(Visitor& v) {
     v(model, "model", {.help = "Robot model file (robots/p3dx.yaml).", .required = true});
     v(start, "start", {.min = -1e6, .max = 1e6, .help = "Pose of base_link in map at the start."});
+    v(present, "present", {.help = "Is in the world at the start; otherwise it has ports, and a request spawns it."});
     v(odometry_errors, "odometry_errors",
       {.choices = {"given", "model"},
        .help = "The errors that are given here, or those that the model's file holds as typical."});

@@ -53,13 +53,21 @@ RobotPorts::RobotPorts(Component* owner, const std::string& name, const Equipmen
                    "Which wheels of " + name + " an obstacle holds up, if asked for; when that changes.");
 }
 
-void RobotPorts::steer(Simulation& simulation, std::size_t robot) {
+void RobotPorts::steer(Simulation& simulation, std::optional<std::size_t> robot) {
   for (const auto& command : cmd_vel_.take()) {
-    if (command.disposed()) continue;
-    const auto refused = simulation.robots()[robot].drive().refused_commands();
-    simulation.command(robot, {command->twist.linear.x, command->twist.angular.z});
-    last_refused_ = simulation.robots()[robot].drive().refused_commands() > refused;
+    if (command.disposed() || !robot) continue;
+    const auto refused = simulation.robots()[*robot].drive().refused_commands();
+    simulation.command(*robot, {command->twist.linear.x, command->twist.angular.z});
+    last_refused_ = simulation.robots()[*robot].drive().refused_commands() > refused;
   }
+}
+
+void RobotPorts::restart() {
+  contacts_ = 0;
+  min_clearance_ = infinity;
+  pressed_.reset();
+  stalled_.reset();
+  last_refused_ = false;
 }
 
 void RobotPorts::publish(const Robot& robot, Duration simulated, Time now, tf2_msgs::msg::TFMessage& frames,

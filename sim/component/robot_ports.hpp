@@ -35,8 +35,11 @@ class RobotPorts {
 
   RobotPorts(Component* owner, const std::string& name, const Equipment& equipment);
 
-  /// Hands the drive what has been commanded since the last step.
-  void steer(Simulation& simulation, std::size_t robot);
+  /// Hands the drive what has been commanded since the last step; drops it if the robot is not in the world.
+  void steer(Simulation& simulation, std::optional<std::size_t> robot);
+
+  /// Another robot begins under this name: what was published of the one before counts no more.
+  void restart();
 
   /// Publishes what is new at `now`, which is `simulated` in the simulation, and adds the robot's frames to `frames` if
   /// its odometry is new: map to odom only if asked for.

@@ -70,7 +70,7 @@ function rods(    count, tries, x, y, i, free, xs, ys) {
   say("so that none within 5 m can stand between two of a sonar's 32 rays. Between any two there are at least 2.6 m, more than")
   say("three times the diameter of 0.8 m of the Cybermotion K2A that the paper drives.")
   say("")
-  say("start of a p3dx: [-2.00 m, 8.00 m, 0 deg]  the goal on the other side is (26, 8)")
+  say("start of a k2a: [-2.00 m, 8.00 m, 0 deg]  the goal on the other side is (26, 8)")
   say("start of a p3at: [-2.00 m, 4.00 m, 0 deg]  the goal on the other side is (26, 12)")
   state = 20090
   for (tries = 0; tries < 4000; ++tries) {

@@ -170,7 +170,7 @@ TEST_F(Program, RefusesToDrawWhatIsNoWorld) {
   std::ofstream(folder_ / "broken.yaml") << "kervan_world: 1\nname: lab\nwalls: []\n";
   expect_refused("draw broken.yaml",
                  "broken.yaml:3:1: unknown key 'walls'; allowed: kervan_world, name, segments, circles, "
-                 "boxes, bitmaps, maps");
+                 "boxes, bitmaps, maps, low, moving");
   const Result misspelt = kervan("draw ofice");
   EXPECT_EQ(misspelt.code, 2);
   EXPECT_TRUE(misspelt.output.starts_with("there is no world 'ofice'; did you mean 'office'? there are: corner_180, "))
