@@ -138,7 +138,9 @@ void Robot::measure_gyro(Duration now) { gyro_reading_ = {now, gyro_->measure(ra
 
 void Robot::feel(const Surroundings& around) {
   if (bumpers_.size() == 0) return;
-  if (body_.room(around, bumpers_.touch_range()) > bumpers_.touch_range())
+  // No segment is nearer to anything than the hull, which is a single question, and often answered without asking.
+  const double range = bumpers_.touch_range();
+  if (body_.room(around, range) > range || around.room(body_.outline(), body_.hull()).all.distance > range)
     pressed_.assign(bumpers_.size(), false);
   else
     bumpers_.feel(around, body_.hull(), pressed_);

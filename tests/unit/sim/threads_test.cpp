@@ -22,12 +22,12 @@ std::vector<RobotSetup> crowd() {
   std::vector<RobotSetup> setups;
   for (int i = 0; i < columns * rows; ++i) {
     RobotSetup setup = perfect("r" + std::to_string(i), {spacing * (i % columns), spacing * (i / columns), 0.7 * i});
-    if (i % 4 == 1) setup.model = load_robot_model(KERVAN_SIM_FOLDER "/robots/k2a.yaml");
+    if (i == 7 || i == 20) setup.model = load_robot_model(KERVAN_SIM_FOLDER "/robots/k2a.yaml");
     setup.sonar = {.rays = 3, .noise = 0.01, .drop_out = 0.01};
     setup.model.laser = LaserMount{.pose = {0.1, 0.0, 0.0}, .beams = 31, .field_of_view = pi, .max_range = 4.0};
     setup.odometry.drift = 0.02;
     setup.model.drive.acceleration = 2.0;
-    if (i % 4 == 1 || i % 4 == 2) setup = with_everything(std::move(setup));
+    if (i == 7 || i == 8 || i == 20) setup = with_everything(std::move(setup));
     setups.push_back(std::move(setup));
   }
   return setups;
