@@ -33,14 +33,16 @@ void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomS
     around.cast(origin, {turned.data(), count}, mount_.max_range, {hits.data(), count});
     for (std::size_t i = 0; i < count; ++i) {
       double range = hits[i].distance;
-      // Both numbers are drawn always, so that one imperfection does not change what the other does.
-      auto sequence = random.at(RandomUse::laser, static_cast<std::uint16_t>(first + i), scan);
-      const bool dropped = sequence.uniform() < settings_.drop_out;
-      range += sequence.uniform(-settings_.noise, settings_.noise);
-      if (dropped || !(range <= mount_.max_range))
-        range = infinity;
-      else if (range < mount_.min_range)
-        range = -infinity;
+      if (range < infinity) {
+        // Both numbers have their places always, so that one imperfection does not change what the other does.
+        auto sequence = random.at(RandomUse::laser, static_cast<std::uint16_t>(first + i), scan);
+        const bool dropped = sequence.happens(settings_.drop_out);
+        range += sequence.uniform(-settings_.noise, settings_.noise);
+        if (dropped || !(range <= mount_.max_range))
+          range = infinity;
+        else if (range < mount_.min_range)
+          range = -infinity;
+      }
       ranges[first + i] = range;
     }
   }

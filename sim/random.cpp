@@ -57,6 +57,12 @@ double RandomSource::Sequence::uniform() { return next()[0]; }
 
 double RandomSource::Sequence::uniform(double low, double high) { return low + (high - low) * uniform(); }
 
+bool RandomSource::Sequence::happens(double probability) {
+  if (probability > 0.0) return uniform() < probability;
+  ++counter_[0];  // the number has its place in the sequence all the same
+  return false;
+}
+
 double RandomSource::Sequence::gaussian() {
   const auto [a, b] = next();
   return std::sqrt(-2.0 * std::log(1.0 - a)) * std::cos(2.0 * std::numbers::pi * b);

@@ -36,6 +36,7 @@ class RandomSource {
     double uniform();                         ///< in [0, 1), a multiple of 2^-53
     double uniform(double low, double high);  ///< in [low, high)
     double gaussian();                        ///< mean 0, standard deviation 1 (Box and Muller 1958)
+    bool happens(double probability);         ///< as uniform() < probability, quicker if it is 0
 
    private:
     friend class RandomSource;

@@ -56,11 +56,14 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
     const std::uint16_t i = firing(k, number);
     double range = echo(round, i).distance;
     if (settings_.crosstalk > 0.0) range = disturbed(round, i, range);
-    // Both numbers are drawn always, so that one imperfection does not change what the other does.
-    auto sequence = random.at(RandomUse::sonar, i, number);
-    const bool dropped = sequence.uniform() < settings_.drop_out;
-    const double noisy = range * (1.0 + settings_.noise * sequence.gaussian());
-    ranges[i] = dropped || !(noisy <= ring_.max_range) ? infinity : std::max(noisy, ring_.min_range);
+    if (range < infinity) {
+      // Both numbers have their places always, so that one imperfection does not change what the other does.
+      auto sequence = random.at(RandomUse::sonar, i, number);
+      const bool dropped = sequence.happens(settings_.drop_out);
+      const double noisy = range * (1.0 + settings_.noise * sequence.gaussian());
+      range = dropped || !(noisy <= ring_.max_range) ? infinity : std::max(noisy, ring_.min_range);
+    }
+    ranges[i] = range;
   }
 }
 
