@@ -26,8 +26,12 @@ double Body::length(const Motion& motion) const {
 }
 
 bool Body::try_pose(const Pose2& pose, const Surroundings& around) {
+  if (blocker_.map && blocker_.map->clearance({outline_, hull(pose)}, blocker_.id).distance <= skin) return false;
   const Room room = around.room(outline_, hull(pose));
-  if (!(room.all.distance > skin)) return false;
+  if (!(room.all.distance > skin)) {
+    if (!room.other) blocker_ = room.shape;
+    return false;
+  }
   pose_ = pose;
   room_ = room.world;
   clear_ = room.all.distance;
@@ -49,8 +53,10 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
 
   const int moves = room - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
   Motion part{wanted.distance / moves, wanted.turn / moves};
+  blocker_ = {};
   Moved all;
   for (int i = 0; i < moves; ++i) {
+    const bool at_rest = part.distance == 0.0 && part.turn == 0.0;
     const Moved now = move_shortly(part, around);
     all.motion.distance += now.motion.distance;
     all.motion.turn += now.motion.turn;
@@ -58,6 +64,7 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
     all.stopped_turning |= now.stopped_turning;
     if (all.stopped_driving) part.distance = 0.0;
     if (all.stopped_turning) part.turn = 0.0;
+    if (at_rest) break;  // the other parts would do the same
   }
   if (clear_ > released) touching_ = false;
   return all;
@@ -97,6 +104,7 @@ void Body::begin_contact(const Surroundings& around) {
 
 bool Body::put(const Pose2& pose, const Surroundings& around) {
   const double yaw = std::exchange(yaw_, pose.yaw);
+  blocker_ = {};
   if (!try_pose(pose, around)) {
     yaw_ = yaw;
     return false;
@@ -106,7 +114,10 @@ bool Body::put(const Pose2& pose, const Surroundings& around) {
 }
 
 void Body::look(const Surroundings& around) {
-  if (!touching_ && !(around.room_among_bodies(outline_, hull(), min_clearance_) < min_clearance_)) return;
+  const double among_bodies = around.room_among_bodies(outline_, hull(), heeds());
+  // Whether it touches the world its last movement has found out.
+  const bool touch_may_end = touching_ && (among_bodies < released || !last_.other.empty());
+  if (!touch_may_end && !(among_bodies < min_clearance_)) return;
   const Room room = around.room(outline_, hull());
   room_ = room.world;
   clear_ = room.all.distance;

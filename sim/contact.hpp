@@ -91,6 +91,7 @@ class Body {
   Pose2 pose_;
   double room_ = 0.0;   // no more than the clearance to the world is now; exact after a look at it
   double clear_ = 0.0;  // to everything, when it was last looked at
+  ShapeRef blocker_;    // what was in the way last, within one movement: it is likely to be so again
   double min_clearance_ = infinity;
   bool touching_ = false;
   std::uint64_t contacts_ = 0;

@@ -20,6 +20,7 @@ Outline::Outline(std::vector<Vector2> corners) : corners_(std::move(corners)) {
     turned += std::atan2(cross(along, next), along.dot(next));
     outward_.push_back(Vector2(along.y(), -along.x()).normalized());
     circumradius_ = std::max(circumradius_, corners_[i].norm());
+    inradius_ = std::min(inradius_, outward_[i].dot(corners_[i]));
   }
   // A star turns left at every corner as well, but more than once around.
   if (turned > 3.0 * std::numbers::pi) throw std::invalid_argument("the edges of an outline must not cross");

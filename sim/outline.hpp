@@ -27,6 +27,9 @@ class Outline {
   /// Distance from the origin to the farthest corner: a disc of this radius holds the body however it turns.
   double circumradius() const { return circumradius_; }
 
+  /// Distance from the origin to the nearest edge: the body holds a disc of this radius.
+  double inradius() const { return inradius_; }
+
   /// True if the point lies in the body or on its edge.
   bool contains(const Vector2& point) const;
 
@@ -40,6 +43,7 @@ class Outline {
   std::vector<Vector2> corners_;
   std::vector<Vector2> outward_;  // of edge i, unit length
   double circumradius_ = 0.0;
+  double inradius_ = infinity;
 };
 
 }  // namespace kervan::sim

@@ -69,28 +69,50 @@ void ShapeMap::nearest(const Vector2& point, double range, NearestObstacle& best
   }
 }
 
-void ShapeMap::clearance(const PlacedOutline& body, Clearance& best) const {
-  const double radius = body.outline().circumradius();
+Clearance ShapeMap::clearance(const PlacedOutline& body, std::uint32_t id) const {
+  if (id < segments_.size())
+    return body.outline().clearance(Segment{body.to_body(segments_[id].a), body.to_body(segments_[id].b)});
+  const Circle& circle = circles_[id - segments_.size()];
+  return body.outline().clearance(Circle{body.to_body(circle.center), circle.radius});
+}
+
+void ShapeMap::clearance(const PlacedOutline& body, Clearance& best, std::uint32_t& nearest_id) const {
+  struct Candidate {
+    double from_center;  // m
+    std::uint32_t id;
+  };
+  const double radius = body.outline().circumradius(), inradius = body.outline().inradius();
   for (double reach = grid_.cell_size();; reach *= 2.0) {
+    std::array<Candidate, 256> candidates;
+    std::size_t count = 0;
+    double nearest = infinity;  // to the centre
+    // Shapes that are farther from the centre than the nearest of all, by more than the body's widths differ, cannot be
+    // nearest to the body: most are left out before they are looked at closely.
+    const auto look_closely = [&] {
+      const double bound = std::max(0.0, nearest - inradius);
+      for (std::size_t i = 0; i < count; ++i) {
+        if (candidates[i].from_center > std::min(bound, best.distance) + radius + doubt) continue;
+        const Clearance found = clearance(body, candidates[i].id);
+        if (found.distance >= best.distance) continue;
+        best = found;
+        nearest_id = candidates[i].id;
+      }
+      count = 0;
+    };
     Recent recent;
     const Vector2 extent = Vector2::Constant(radius + reach);
     const bool all = grid_.visit_box(body.center() - extent, body.center() + extent, [&](ShapeGrid::Ids ids) {
       for (const std::uint32_t id : ids) {
         if (recent.has_or_add(id)) continue;
-        // Most shapes are too far from the disc around the body to be the nearest.
-        const double enough = best.distance + radius + doubt;
-        if (id < segments_.size()) {
-          const Segment& segment = segments_[id];
-          if ((nearest_point(segment, body.center()) - body.center()).squaredNorm() > enough * enough) continue;
-          const Clearance found = body.outline().clearance(Segment{body.to_body(segment.a), body.to_body(segment.b)});
-          if (found.distance < best.distance) best = found;
-        } else {
-          const Circle& circle = circles_[id - segments_.size()];
-          const Clearance found = body.outline().clearance(Circle{body.to_body(circle.center), circle.radius});
-          if (found.distance < best.distance) best = found;
-        }
+        const Vector2 near = id < segments_.size() ? nearest_point(segments_[id], body.center())
+                                                   : nearest_point(circles_[id - segments_.size()], body.center());
+        const double from_center = (near - body.center()).norm();
+        nearest = std::min(nearest, from_center);
+        candidates[count++] = {from_center, id};
+        if (count == candidates.size()) look_closely();
       }
     });
+    look_closely();
     if (all || best.distance <= reach) break;
   }
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -56,8 +57,12 @@ class ShapeMap {
   /// The nearest point of all shapes comes into `best` if it is nearer. It is looked for as far as `range`.
   void nearest(const Vector2& point, double range, NearestObstacle& best) const;
 
-  /// The same for the clearance of a body; the points in its frame.
-  void clearance(const PlacedOutline& body, Clearance& best) const;
+  /// The same for the clearance of a body; the points in its frame. `id` becomes that of the shape, if it is one of
+  /// these.
+  void clearance(const PlacedOutline& body, Clearance& best, std::uint32_t& id) const;
+
+  /// The clearance to the shape with the number `id` alone.
+  Clearance clearance(const PlacedOutline& body, std::uint32_t id) const;
 
   std::span<const Segment> segments() const { return segments_; }
   std::span<const Circle> circles() const { return circles_; }
@@ -66,6 +71,12 @@ class ShapeMap {
   std::vector<Segment> segments_;
   std::vector<Circle> circles_;
   ShapeGrid grid_;
+};
+
+/// One shape of a map; none if `map` is null.
+struct ShapeRef {
+  const ShapeMap* map = nullptr;
+  std::uint32_t id = 0;
 };
 
 }  // namespace kervan::sim

@@ -68,7 +68,11 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
 }
 
 Sonars::Echo Sonars::echo(const Round& round, std::size_t i) const {
-  constexpr std::size_t most = 64;  // rays at a time, on the stack
+  return settings_.rays == 1 ? echo_of<1>(round, i) : echo_of<64>(round, i);
+}
+
+template <std::size_t most>
+Sonars::Echo Sonars::echo_of(const Round& round, std::size_t i) const {
   std::array<Vector2, most> turned;
   std::array<RayHit, most> hits;
   double min_cosine = min_cosine_;
@@ -78,7 +82,8 @@ Sonars::Echo Sonars::echo(const Round& round, std::size_t i) const {
   }
   const auto rays = static_cast<std::size_t>(settings_.rays);
   const std::span<const Vector2> directions{&directions_[i * rays], rays};
-  const Vector2 origin = round.pose * ring_.poses[i].position();
+  const Pose2 &body = round.pose, &mount = ring_.poses[i];
+  const Vector2 origin(body.x + round.c * mount.x - round.s * mount.y, body.y + round.s * mount.x + round.c * mount.y);
   Echo nearest;
   for (std::size_t first = 0; first < rays; first += most) {
     const std::size_t count = std::min(most, rays - first);

@@ -78,6 +78,9 @@ class Sonars {
   std::uint16_t firing(std::size_t k, std::uint64_t round) const;
   /// The nearest echo of sonar i before noise, of the world or of another body.
   Echo echo(const Round& round, std::size_t i) const;
+  /// The same, `most` rays at a time.
+  template <std::size_t most>
+  Echo echo_of(const Round& round, std::size_t i) const;
   /// Half of the shortest way on which a pulse comes to sonar i, whose own echo is at `own`, if it hears another one.
   double disturbed(const Round& round, std::size_t i, double own) const;
 

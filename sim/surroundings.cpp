@@ -87,7 +87,7 @@ Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outl
 
 Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   Room room;
-  room.all = world_.clearance(outline, pose);
+  room.all = world_.clearance(outline, pose, &room.shape);
   room.world = room.all.distance;
   if (!bodies_) return room;
   const auto consider = [&](std::size_t body) {

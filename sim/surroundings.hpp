@@ -15,6 +15,7 @@ namespace kervan::sim {
 struct Room {
   Clearance all;                       ///< to the nearest of everything
   double world = infinity;             ///< m to the world alone
+  ShapeRef shape = {};                 ///< of the world that is nearest
   const std::string* other = nullptr;  ///< the name of the body that is nearest; nullptr: the world is
 };
 

@@ -84,6 +84,9 @@ void World::cast(const Vector2& origin, std::span<const Vector2> directions, dou
   constexpr std::size_t most = 256;  // rays at a time, on the stack
   std::array<float, most> dx, dy, distances;
   std::array<std::int32_t, most> faces;
+  // A ray or two are done before wide registers are filled.
+  constexpr std::size_t few = 2;
+  const Instructions instructions = directions.size() <= few ? Instructions::scalar : widest();
   for (std::size_t first = 0; first < directions.size() && !bitmaps_.empty(); first += most) {
     const std::size_t count = std::min(most, directions.size() - first);
     for (std::size_t i = 0; i < count; ++i) {
@@ -91,7 +94,8 @@ void World::cast(const Vector2& origin, std::span<const Vector2> directions, dou
       dy[i] = static_cast<float>(directions[first + i].y());
     }
     for (const CellMap& map : bitmaps_) {
-      map.cast(origin, {dx.data(), count}, {dy.data(), count}, range, {distances.data(), count}, {faces.data(), count});
+      map.cast(origin, {dx.data(), count}, {dy.data(), count}, range, {distances.data(), count}, {faces.data(), count},
+               instructions);
       for (std::size_t i = 0; i < count; ++i) {
         RayHit& hit = hits[first + i];
         const double distance = distances[i];
@@ -112,13 +116,20 @@ std::optional<NearestObstacle> World::nearest(const Vector2& point, double range
   return best;
 }
 
-Clearance World::clearance(const Outline& outline, const Pose2& pose) const {
+Clearance World::clearance(const Outline& outline, const Pose2& pose, ShapeRef* nearest) const {
   const PlacedOutline body(outline, pose);
+  if (nearest) *nearest = {};
   if (solid_at(body.center())) return {0.0, body.center(), body.center()};
   Clearance best;
-  tall_.map().clearance(body, best);
-  low_.map().clearance(body, best);
-  for (const CellMap& map : bitmaps_) map.edges().clearance(body, best);
+  const auto ask = [&](const ShapeMap& map) {
+    const double before = best.distance;
+    std::uint32_t id = 0;
+    map.clearance(body, best, id);
+    if (nearest && best.distance < before) *nearest = {&map, id};
+  };
+  ask(tall_.map());
+  ask(low_.map());
+  for (const CellMap& map : bitmaps_) ask(map.edges());
   if (best.distance == infinity) return best;
   best.on_obstacle = body.to_map(best.on_obstacle);
   best.on_outline = body.to_map(best.on_outline);

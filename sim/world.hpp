@@ -72,8 +72,9 @@ class World {
   std::optional<NearestObstacle> nearest(const Vector2& point, double range = infinity) const;
 
   /// How much room a body has at `pose`: 0 when it touches or overlaps an obstacle, low or not, infinity in a world
-  /// without any. Exact; a body that lies wholly inside a solid overlaps it.
-  Clearance clearance(const Outline& outline, const Pose2& pose) const;
+  /// without any. Exact; a body that lies wholly inside a solid overlaps it. `nearest` becomes the shape that takes the
+  /// room, or none.
+  Clearance clearance(const Outline& outline, const Pose2& pose, ShapeRef* nearest = nullptr) const;
 
   const std::string& name() const { return name_; }
 

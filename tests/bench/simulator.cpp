@@ -54,7 +54,7 @@ sim::RobotSetup setup(std::size_t number, const sim::Pose2& start, Sensors senso
   sim::RobotSetup setup{.name = "r" + std::to_string(number), .model = p3dx, .start = start};
   setup.sonar.rays = 1;
   setup.odometry_period = 100ms;
-  if (sensors == Sensors::laser) setup.model.sonars.poses.clear();
+  if (sensors == Sensors::laser) setup.model.sonars = {};
   if (sensors != Sensors::sonar)
     setup.model.laser = sim::LaserMount{
         .pose = {0.018, 0.0, 0.0}, .beams = 181, .field_of_view = std::numbers::pi, .min_range = 0.0, .max_range = 8.0};
