@@ -19,11 +19,13 @@ std::array<Vector2, 2> ends(const Pose2& segment, double length) {
 
 /// Counter-clockwise and strictly convex (Andrew 1979).
 std::vector<Vector2> convex_hull(std::vector<Vector2> points) {
-  constexpr double straight = 1e-9;  // m2; corners that bend less are left out
+  double extent = 0.0;  // m2
+  for (const Vector2& point : points) extent = std::max(extent, point.squaredNorm());
+  const double straight = 1e-9 * extent;  // corners that bend less are left out
   std::sort(points.begin(), points.end(),
             [](const Vector2& a, const Vector2& b) { return a.x() < b.x() || (a.x() == b.x() && a.y() < b.y()); });
   std::vector<Vector2> hull;
-  const auto add = [&hull](const Vector2& point, std::size_t first) {
+  const auto add = [&hull, straight](const Vector2& point, std::size_t first) {
     while (hull.size() >= first + 2 && cross(hull.back() - hull[hull.size() - 2], point - hull.back()) <= straight)
       hull.pop_back();
     hull.push_back(point);

@@ -158,8 +158,12 @@ RobotModel robot_model(const config::Node& file) {
   if (const config::Node* given = file.optional("laser")) model.laser = laser(*given);
   if (const config::Node* given = file.optional("bumpers")) {
     model.bumpers = bumpers(*given);
-    require_outside(model, given->optional("front"));
-    require_outside(model, given->optional("rear"));
+    try {
+      require_outside(model, given->optional("front"));
+      require_outside(model, given->optional("rear"));
+    } catch (const std::invalid_argument& error) {
+      given->fail(std::string("body and bumpers have no hull: ") + error.what());
+    }
   }
   if (const config::Node* given = file.optional("odometry")) model.odometry = odometry(*given);
   return model;

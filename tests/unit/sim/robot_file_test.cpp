@@ -151,6 +151,13 @@ TEST(RobotFile, EveryMistakeInTheBumpersIsNamedAtItsPlace) {
             "r.yaml:3:32: front[0]: is farther than 10 m from the origin of base_link");
 }
 
+TEST(RobotFile, ABodyWithoutWidthCannotWearBumpers) {
+  EXPECT_EQ(robot_refusal("outline: [[1 m, 0 m], [-1 m, 1 m], [-1 m, -1 m]]",
+                          "outline: [[9 m, -1e-9 m], [9 m, 1e-9 m], [-9 m, 0 m]]\n"
+                          "bumpers: {length: 1e-9 m, rear: [[-9 m, 0 m, 180 deg]]}"),
+            "r.yaml:4:10: bumpers: body and bumpers have no hull: an outline needs at least 3 corners");
+}
+
 TEST(RobotFile, EveryMistakeInTheOdometryIsNamedAtItsPlace) {
   const auto refusal = [](const std::string& odometry) {
     return robot_refusal("name: r", "name: r\nodometry: " + odometry);
