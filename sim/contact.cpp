@@ -16,7 +16,9 @@ constexpr double doubt = 1e-9;         // m; more than the rounding of sums of d
 
 Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around, bool turns)
     : outline_(outline), turns_(turns), yaw_(start.yaw), pose_(start) {
-  if (!try_pose(start, around)) throw std::invalid_argument("the body does not fit between the obstacles at its start");
+  Blocker blocker;
+  if (!try_pose(start, around, blocker))
+    throw std::invalid_argument("the body does not fit between the obstacles at its start");
 }
 
 double Body::heeds() const { return std::max(min_clearance_, released); }
@@ -25,16 +27,20 @@ double Body::length(const Motion& motion) const {
   return std::abs(motion.distance) + outline_.circumradius() * std::abs(motion.turn);
 }
 
-bool Body::try_pose(const Pose2& pose, const Surroundings& around) {
-  if (blocker_.map && blocker_.map->clearance({outline_, hull(pose)}, blocker_.id).distance <= skin) return false;
+std::optional<Room> Body::room_at(const Pose2& pose, const Surroundings& around, Blocker& blocker) const {
+  if (blocker && around.still_in_the_way(*blocker, outline_, hull(pose), skin)) return std::nullopt;
   const Room room = around.room(outline_, hull(pose));
-  if (!(room.all.distance > skin)) {
-    if (!room.other) blocker_ = room.shape;
-    return false;
-  }
+  if (room.all.distance > skin) return room;
+  blocker = room;
+  return std::nullopt;
+}
+
+bool Body::try_pose(const Pose2& pose, const Surroundings& around, Blocker& blocker) {
+  const std::optional<Room> room = room_at(pose, around, blocker);
+  if (!room) return false;
   pose_ = pose;
-  room_ = room.world;
-  clear_ = room.all.distance;
+  room_ = room->world;
+  clear_ = room->all.distance;
   min_clearance_ = std::min(min_clearance_, clear_);
   return true;
 }
@@ -53,11 +59,11 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
 
   const int moves = room - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
   Motion part{wanted.distance / moves, wanted.turn / moves};
-  blocker_ = {};
+  Blocker blocker;
   Moved all;
   for (int i = 0; i < moves; ++i) {
     const bool at_rest = part.distance == 0.0 && part.turn == 0.0;
-    const Moved now = move_shortly(part, around);
+    const Moved now = move_shortly(part, around, blocker);
     all.motion.distance += now.motion.distance;
     all.motion.turn += now.motion.turn;
     all.stopped_driving |= now.stopped_driving;
@@ -70,27 +76,34 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
   return all;
 }
 
-Moved Body::move_shortly(const Motion& wanted, const Surroundings& around) {
-  if (try_pose(advance(pose_, wanted), around)) return {wanted};
+Moved Body::move_shortly(const Motion& wanted, const Surroundings& around, Blocker& blocker) {
+  if (try_pose(advance(pose_, wanted), around, blocker)) return {wanted};
 
-  const double free = drive_up_to_obstacle(wanted, around);
+  const double free = drive_up_to_obstacle(wanted, around, blocker);
   if (!touching_) begin_contact(around);
   const Motion driven{free * wanted.distance, free * wanted.turn};
   const Motion rest{wanted.distance - driven.distance, wanted.turn - driven.turn};
   if (wanted.distance != 0.0 && wanted.turn != 0.0) {
-    if (try_pose(advance(pose_, {0.0, rest.turn}), around)) return {{driven.distance, wanted.turn}, true, false};
-    if (try_pose(advance(pose_, {rest.distance, 0.0}), around)) return {{wanted.distance, driven.turn}, false, true};
+    if (try_pose(advance(pose_, {0.0, rest.turn}), around, blocker))
+      return {{driven.distance, wanted.turn}, true, false};
+    if (try_pose(advance(pose_, {rest.distance, 0.0}), around, blocker))
+      return {{wanted.distance, driven.turn}, false, true};
   }
   return {driven, wanted.distance != 0.0, wanted.turn != 0.0};
 }
 
-double Body::drive_up_to_obstacle(const Motion& motion, const Surroundings& around) {
+double Body::drive_up_to_obstacle(const Motion& motion, const Surroundings& around, Blocker& blocker) {
   const Pose2 start = pose_;
   const double total = length(motion);
   double free = 0.0, blocked = 1.0;
+  // Whoever pushes against something cannot go the least part of the way: then nothing else needs to be tried.
+  double least = 1.0;
+  while (least * total > skin) least *= 0.5;
+  if (!room_at(advance(start, {least * motion.distance, least * motion.turn}), around, blocker)) return free;
   while ((blocked - free) * total > skin) {
     const double middle = 0.5 * (free + blocked);
-    (try_pose(advance(start, {middle * motion.distance, middle * motion.turn}), around) ? free : blocked) = middle;
+    const Pose2 pose = advance(start, {middle * motion.distance, middle * motion.turn});
+    (try_pose(pose, around, blocker) ? free : blocked) = middle;
   }
   return free;
 }
@@ -104,8 +117,8 @@ void Body::begin_contact(const Surroundings& around) {
 
 bool Body::put(const Pose2& pose, const Surroundings& around) {
   const double yaw = std::exchange(yaw_, pose.yaw);
-  blocker_ = {};
-  if (!try_pose(pose, around)) {
+  Blocker blocker;
+  if (!try_pose(pose, around, blocker)) {
     yaw_ = yaw;
     return false;
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "sim/drive.hpp"
@@ -77,12 +78,16 @@ class Body {
 
  private:
   Pose2 hull(const Pose2& pose) const { return turns_ ? pose : Pose2{pose.x, pose.y, yaw_}; }
+  /// What was in the way last, within one movement: it is likely to be so again.
+  using Blocker = std::optional<Room>;
+  /// The room at the pose, if it is free.
+  std::optional<Room> room_at(const Pose2& pose, const Surroundings& around, Blocker& blocker) const;
   /// Takes the pose if it is free.
-  bool try_pose(const Pose2& pose, const Surroundings& around);
+  bool try_pose(const Pose2& pose, const Surroundings& around, Blocker& blocker);
   /// The part of a blocked arc, in [0, 1), that is free; takes the pose there.
-  double drive_up_to_obstacle(const Motion& motion, const Surroundings& around);
+  double drive_up_to_obstacle(const Motion& motion, const Surroundings& around, Blocker& blocker);
   /// One movement that is short enough not to jump over anything.
-  Moved move_shortly(const Motion& wanted, const Surroundings& around);
+  Moved move_shortly(const Motion& wanted, const Surroundings& around, Blocker& blocker);
   void begin_contact(const Surroundings& around);
 
   Outline outline_;
@@ -91,7 +96,6 @@ class Body {
   Pose2 pose_;
   double room_ = 0.0;   // no more than the clearance to the world is now; exact after a look at it
   double clear_ = 0.0;  // to everything, when it was last looked at
-  ShapeRef blocker_;    // what was in the way last, within one movement: it is likely to be so again
   double min_clearance_ = infinity;
   bool touching_ = false;
   std::uint64_t contacts_ = 0;

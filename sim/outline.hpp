@@ -1,6 +1,7 @@
 /// The body of a robot seen from above: a convex polygon in its own frame (base_link).
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -32,6 +33,15 @@ class Outline {
 
   /// True if the point lies in the body or on its edge.
   bool contains(const Vector2& point) const;
+
+  /// No more than the clearance to the segment, and quick: how far it lies beyond one of the edges. May be negative.
+  double separation(const Segment& segment) const {
+    double most = -infinity;
+    for (std::size_t i = 0; i < corners_.size(); ++i)
+      most =
+          std::max(most, std::min(outward_[i].dot(segment.a - corners_[i]), outward_[i].dot(segment.b - corners_[i])));
+    return most;
+  }
 
   /// Exact clearance to a shape given in the outline's own frame.
   Clearance clearance(const Segment& segment) const;

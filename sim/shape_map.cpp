@@ -85,19 +85,28 @@ void ShapeMap::clearance(const PlacedOutline& body, Clearance& best, std::uint32
   for (double reach = grid_.cell_size();; reach *= 2.0) {
     std::array<Candidate, 256> candidates;
     std::size_t count = 0;
-    double nearest = infinity;  // to the centre
-    // Shapes that are farther from the centre than the nearest of all, by more than the body's widths differ, cannot be
-    // nearest to the body: most are left out before they are looked at closely.
+    std::size_t nearest = 0;  // of them to the centre
+    // The one that is nearest to the centre is hardly ever much farther from the body than the nearest to that, so most
+    // of the others can be left out before they are looked at closely.
     const auto look_closely = [&] {
-      const double bound = std::max(0.0, nearest - inradius);
+      if (count == 0) return;
+      double enough = std::min(best.distance, std::max(0.0, candidates[nearest].from_center - inradius)) + doubt;
+      if (candidates[nearest].from_center <= enough + radius)
+        enough = std::min(enough, clearance(body, candidates[nearest].id).distance + doubt);
       for (std::size_t i = 0; i < count; ++i) {
-        if (candidates[i].from_center > std::min(bound, best.distance) + radius + doubt) continue;
-        const Clearance found = clearance(body, candidates[i].id);
+        const std::uint32_t id = candidates[i].id;
+        if (candidates[i].from_center > enough + radius) continue;
+        if (id < segments_.size()) {
+          const Segment segment{body.to_body(segments_[id].a), body.to_body(segments_[id].b)};
+          if (body.outline().separation(segment) > enough) continue;
+        }
+        const Clearance found = clearance(body, id);
         if (found.distance >= best.distance) continue;
         best = found;
-        nearest_id = candidates[i].id;
+        nearest_id = id;
+        enough = std::min(enough, best.distance + doubt);
       }
-      count = 0;
+      count = nearest = 0;
     };
     Recent recent;
     const Vector2 extent = Vector2::Constant(radius + reach);
@@ -107,8 +116,9 @@ void ShapeMap::clearance(const PlacedOutline& body, Clearance& best, std::uint32
         const Vector2 near = id < segments_.size() ? nearest_point(segments_[id], body.center())
                                                    : nearest_point(circles_[id - segments_.size()], body.center());
         const double from_center = (near - body.center()).norm();
-        nearest = std::min(nearest, from_center);
-        candidates[count++] = {from_center, id};
+        candidates[count] = {from_center, id};
+        if (from_center < candidates[nearest].from_center) nearest = count;
+        ++count;
         if (count == candidates.size()) look_closely();
       }
     });

@@ -99,6 +99,7 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
     if (found.distance == room.all.distance && (!room.other || bodies_->name(body) >= *room.other)) return;
     room.all = found;
     room.other = &bodies_->name(body);
+    room.body = body;
   };
   // Nobody farther away than the nearest so far matters. Where nothing is near, the search grows.
   const double radii = outline.circumradius() + bodies_->largest_radius() + doubt;
@@ -108,6 +109,11 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
     const bool all = bodies_->visit_box(pose.position() - extent, pose.position() + extent, consider);
     if (all || room.all.distance <= reach) return room;
   }
+}
+
+bool Surroundings::still_in_the_way(const Room& room, const Outline& outline, const Pose2& pose, double within) const {
+  if (room.other) return clearance(*bodies_, room.body, outline, pose).distance <= within;
+  return room.shape.map && room.shape.map->clearance({outline, pose}, room.shape.id).distance <= within;
 }
 
 double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose, double within) const {
@@ -147,11 +153,14 @@ void Surroundings::cast(const Vector2& origin, std::span<const Vector2> directio
       if (along < -radius || along - radius > std::min(range, hits[i].distance)) return;
       if (std::abs(cross(ray.direction, to_center)) > radius) return;
       const std::span<const Vector2> corners = bodies_->corners(body);
+      std::size_t met = corners.size();
       for (std::size_t k = 0; k < corners.size(); ++k) {
-        const Segment side = edge(corners, k);
-        const double distance = hit_distance(ray, side);
-        if (distance < hits[i].distance && distance <= range) hits[i] = {distance, hit_normal(ray, side)};
+        const double distance = hit_distance(ray, edge(corners, k));
+        if (!(distance < hits[i].distance && distance <= range)) continue;
+        hits[i].distance = distance;
+        met = k;
       }
+      if (met < corners.size()) hits[i].normal = hit_normal(ray, edge(corners, met));
     });
   });
 }

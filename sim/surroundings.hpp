@@ -17,6 +17,7 @@ struct Room {
   double world = infinity;             ///< m to the world alone
   ShapeRef shape = {};                 ///< of the world that is nearest
   const std::string* other = nullptr;  ///< the name of the body that is nearest; nullptr: the world is
+  std::size_t body = 0;                ///< the index of that body
 };
 
 class Surroundings {
@@ -35,6 +36,9 @@ class Surroundings {
 
   /// How much room the body has at `pose`. Exact; of bodies that are equally near the first by name.
   Room room(const Outline& outline, const Pose2& pose) const;
+
+  /// True if what took the room at another pose leaves no more than `within` at this one. Bodies have not moved since.
+  bool still_in_the_way(const Room& room, const Outline& outline, const Pose2& pose, double within) const;
 
   /// No more than the distance of the body to any other; quick, and may be negative. If nobody is within `within` it is
   /// any number from there on.

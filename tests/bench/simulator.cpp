@@ -77,7 +77,7 @@ Simulation crowd(const std::shared_ptr<const sim::World>& world, double extent, 
   return simulation;
 }
 
-/// Drives on where it is free and turns to one side where it is not.
+/// Drives on where it is free, turns to one side where it is not, and backs out where it has bumped into something.
 void wander(Simulation& simulation) {
   for (std::size_t i = 0; i < simulation.robots().size(); ++i) {
     const sim::Robot& robot = simulation.robots()[i];
@@ -87,7 +87,10 @@ void wander(Simulation& simulation) {
     else
       for (std::size_t sonar = 1; sonar <= 6; ++sonar) ahead = std::min(ahead, robot.sonar().ranges[sonar]);
     const double side = i % 2 == 0 ? 1.0 : -1.0;
-    simulation.command(i, ahead > 0.6 ? geometry::Twist2{0.4, 0.0} : geometry::Twist2{0.0, side});
+    if (robot.body().touching())
+      simulation.command(i, {-0.2, -side});
+    else
+      simulation.command(i, ahead > 0.6 ? geometry::Twist2{0.4, 0.0} : geometry::Twist2{0.0, side});
   }
 }
 
