@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 
 #include "components/observe/decimal.hpp"
 #include "components/observe/svg_writer.hpp"
@@ -120,6 +121,13 @@ void draw_odometry(WorldLayer& layer, const Polyline& path) { layer.line(path, i
 
 void draw_truth(WorldLayer& layer, const Polyline& path, const char* colour) { layer.line(path, colour, 2.4); }
 
+void draw_driven(WorldLayer& layer, const DrawnRobot& robot, const char* colour, double tolerance) {
+  draw_truth(layer, simplified(robot.truth, tolerance), colour);
+  for (const auto& stretch : robot.stretches)
+    layer.line(simplified(stretch.path, tolerance), stretch.colour.c_str(), 3.2);
+  draw_odometry(layer, simplified(robot.odometry, tolerance));
+}
+
 /// A node of the graph that no route uses.
 void draw_node(WorldLayer& layer, const Vector2& at, std::size_t number) {
   layer.circle(at, 8.5 * layer.px(), "#f1f4f7", "#a9b4bf", 1.3);
@@ -216,8 +224,7 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, d
   const double tolerance = px / 3.0;  // a third of a pixel
   for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
     const auto& robot = drawing.robots[i];
-    draw_truth(layer, simplified(robot.truth, tolerance), colour_of(i));
-    draw_odometry(layer, simplified(robot.odometry, tolerance));
+    draw_driven(layer, robot, colour_of(i), tolerance);
   }
   for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
     if (on_a_route(drawing, drawing.nodes[i])) draw_waypoint(layer, drawing.nodes[i], i);
@@ -259,8 +266,7 @@ void draw_detail(SvgWriter& svg, const MapDrawing& drawing, std::size_t index, d
   draw_world(layer, drawing.world);
   layer.circle(goal, robot.tolerance, "none", success_colour, 1.4, layer.dashes(5.0, 4.0));
   const double tolerance = px / 3.0;
-  draw_truth(layer, simplified(robot.truth, tolerance), colour_of(index));
-  draw_odometry(layer, simplified(robot.odometry, tolerance));
+  draw_driven(layer, robot, colour_of(index), tolerance);
   draw_goal(layer, goal);
   draw_end(layer, robot.truth.back(), colour_of(index));
   if (robot.closest) draw_closest(layer, *robot.closest);
@@ -298,13 +304,29 @@ void draw_header(SvgWriter& svg, const MapDrawing& drawing) {
   svg.text(drawing.subtitle, {{"x", pixels(margin)}, {"y", "58"}, {"font-size", "13"}, {"fill", soft_ink}});
 }
 
+/// The colours of the behaviours that were in charge, by their names, in two columns. Returns where they end.
+double draw_behaviours(SvgWriter& svg, const std::vector<DrawnStretch>& stretches, double left, double y) {
+  std::map<std::string, std::string> colours;
+  for (const auto& stretch : stretches) colours[stretch.behaviour] = stretch.colour;
+  std::size_t place = 0;
+  for (const auto& [behaviour, colour] : colours) {
+    const double x = left + (place % 2 == 0 ? 0.0 : 205.0);
+    if (place++ % 2 == 0) y += line_height;
+    svg.element("rect", {{"x", pixels(x)}, {"y", pixels(y - 7.0)}, {"width", "28"}, {"height", "5"}, {"fill", colour}});
+    svg.text(behaviour.empty() ? "nobody in charge" : behaviour,
+             {{"x", pixels(x + 40.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}});
+  }
+  return y;
+}
+
 /// The figures of one robot from (left, top) downwards, page pixels. Returns where they end.
 double draw_figures(SvgWriter& svg, const DrawnRobot& robot, const char* colour, double left, double top) {
   double y = top + line_height;
   svg.open("text", {{"x", pixels(left)}, {"y", pixels(y)}, {"font-size", "13"}, {"fill", ink}});
   svg.span(robot.name, {{"font-weight", "bold"}, {"fill", colour}});
-  svg.span(robot.reached ? "reached the goal" : "did not reach the goal",
-           {{"dx", "8"}, {"font-weight", "bold"}, {"fill", robot.reached ? success_colour : failure_colour}});
+  if (robot.goal)
+    svg.span(robot.reached ? "reached the goal" : "did not reach the goal",
+             {{"dx", "8"}, {"font-weight", "bold"}, {"fill", robot.reached ? success_colour : failure_colour}});
   svg.close("text");
   // Two columns of label and value.
   for (std::size_t k = 0; k < robot.figures.size(); ++k) {
@@ -314,6 +336,7 @@ double draw_figures(SvgWriter& svg, const DrawnRobot& robot, const char* colour,
     svg.text(robot.figures[k].second,
              {{"x", pixels(x + 185.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}, {"text-anchor", "end"}});
   }
+  y = draw_behaviours(svg, robot.stretches, left, y);
   return y + 8.0;
 }
 

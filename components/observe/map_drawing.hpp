@@ -25,12 +25,20 @@ struct DrawnWorld {
   std::vector<Polyline> polygons;  ///< solid; the last corner joins the first
 };
 
+/// A part of a driven path that has a colour of its own: that of the behaviour in charge.
+struct DrawnStretch {
+  std::string behaviour;  ///< empty: nobody
+  std::string colour;     ///< "#1769aa"
+  Polyline path;
+};
+
 /// One robot's run. What is empty or absent is not drawn.
 struct DrawnRobot {
   std::string name;
-  Polyline route;     ///< as planned
-  Polyline truth;     ///< as driven
-  Polyline odometry;  ///< as the robot believes it has driven
+  Polyline route;                       ///< as planned
+  Polyline truth;                       ///< as driven
+  Polyline odometry;                    ///< as the robot believes it has driven
+  std::vector<DrawnStretch> stretches;  ///< of the truth, over it, with their colours beside the map
   std::optional<geometry::Vector2> goal;
   double tolerance = 0.10;                   ///< around the goal
   std::optional<geometry::Vector2> closest;  ///< where it came nearest to the goal

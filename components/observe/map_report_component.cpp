@@ -9,12 +9,14 @@
 #include <string>
 #include <vector>
 
+#include "components/observe/arbitration_log.hpp"
 #include "components/observe/decimal.hpp"
 #include "components/observe/map_drawing.hpp"
 #include "components/observe/trajectory_csv.hpp"
 #include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
+#include "kervan_msgs/msg/ArbitrationState.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "kervan_msgs/msg/Outline.hpp"
@@ -129,7 +131,8 @@ class Subject {
         odom_(owner, name + "/odom", qos::sensor.optional(), "Where " + name + " believes to be."),
         route_(owner, name + "/route", qos::latched.optional(), "What is planned for " + name + "."),
         goal_(owner, name + "/goal", qos::latched.optional(), "Where " + name + " is to go."),
-        contact_(owner, name + "/contact", qos::event.optional(), "Every touch of " + name + ".") {
+        contact_(owner, name + "/contact", qos::event.optional(), "Every touch of " + name + "."),
+        arbitration_(owner, name + "/arbitration", qos::event.optional(), "Which behaviour drives " + name + ".") {
     drawn_.name = name;
     if (snapshots > Duration::zero()) sensors_.emplace(owner, name, snapshots);
   }
@@ -141,11 +144,16 @@ class Subject {
   /// Takes the newest samples and appends a row to `table`; nothing while the truth is unknown.
   void look(Time started, Time now, std::ostream& table) {
     for (const auto& contact : contact_.take()) drawn_.contacts.emplace_back(contact->point.x, contact->point.y);
+    for (const auto& state : arbitration_.take()) {
+      arbitration_log_.add(seconds(state.published() - started), state->behaviour, state->priority, state->waiting);
+      in_charge_ = state->behaviour;
+    }
     const auto* truth = truth_.latest();
     if (!truth) return;
     TrajectoryRow row{seconds(now - started), drawn_.name, geometry::pose_of(truth->pose.pose), std::nullopt,
                       geometry::twist_of(truth->twist.twist)};
     drawn_.truth.push_back(row.truth.position());
+    if (in_charge_) colour(*in_charge_);
     if (const auto* odometry = odom_.latest()) {
       row.odom = geometry::pose_of(odometry->pose.pose);
       drawn_.odometry.push_back(row.odom->position());
@@ -155,9 +163,17 @@ class Subject {
     if (auto snapshot = sensors_->look(*truth, started)) drawn_.snapshots.push_back(std::move(*snapshot));
   }
 
+  /// Empty if nobody says which behaviour drives it. `end`: s since the start.
+  std::string timeline(const std::string& title, double end) {
+    if (arbitration_log_.empty()) return {};
+    arbitration_log_.end(end);
+    return to_svg(arbitration_log_, title, end);
+  }
+
   DrawnRobot drawing(double tolerance, const kervan_msgs::msg::MissionResult* result) const {
     DrawnRobot robot = drawn_;
     robot.tolerance = tolerance;
+    for (DrawnStretch& stretch : robot.stretches) stretch.colour = arbitration_log_.colour_of(stretch.behaviour);
     if (const auto* route = route_.latest())
       for (const auto& pose : route->poses) robot.route.push_back(geometry::position_of(pose.pose));
     if (const auto* goal = goal_.latest()) mark_goal(robot, geometry::position_of(goal->pose));
@@ -168,6 +184,17 @@ class Subject {
   }
 
  private:
+  /// The last point of the path is `behaviour`'s.
+  void colour(const std::string& behaviour) {
+    auto& stretches = drawn_.stretches;
+    const Polyline& truth = drawn_.truth;
+    if (stretches.empty() || stretches.back().behaviour != behaviour) {
+      stretches.push_back({behaviour, {}, {}});
+      if (truth.size() > 1) stretches.back().path.push_back(truth[truth.size() - 2]);
+    }
+    stretches.back().path.push_back(truth.back());
+  }
+
   static void mark_goal(DrawnRobot& robot, const geometry::Vector2& goal) {
     robot.goal = goal;
     const auto nearer = [&goal](const geometry::Vector2& a, const geometry::Vector2& b) {
@@ -195,6 +222,9 @@ class Subject {
   Input<nav_msgs::msg::Path> route_;
   Input<geometry_msgs::msg::PoseStamped> goal_;
   Input<kervan_msgs::msg::Contact> contact_;
+  Input<kervan_msgs::msg::ArbitrationState> arbitration_;
+  ArbitrationLog arbitration_log_;
+  std::optional<std::string> in_charge_;  // nothing: nobody has said who is
   std::optional<Sensors> sensors_;
 };
 
@@ -263,10 +293,25 @@ class MapReportComponent final : public Component {
     drawing.subtitle = "ended after " + decimal(seconds(now - started_), 1) + " s";
     if (result && !result->reason.empty()) drawing.subtitle += "; " + result->reason;
     for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));
+    const auto has_goal = [](const DrawnRobot& robot) { return robot.goal.has_value(); };
+    if (!result && std::none_of(drawing.robots.begin(), drawing.robots.end(), has_goal)) drawing.result.clear();
     std::ofstream map(run_folder() / "map.svg");
     map << to_svg(drawing);
     map.close();
+    draw_timelines(seconds(now - started_));
     if (!table_ || !map) log().error("trajectory.csv or map.svg could not be written in {}", run_folder().string());
+  }
+
+  /// arbitration.svg, or arbitration-<robot>.svg for each of several robots, of those that are driven by behaviours.
+  void draw_timelines(double end) {
+    for (std::size_t i = 0; i < robots_.size(); ++i) {
+      const std::string& name = params_.robots[i];
+      const std::string timeline = robots_[i].timeline(params_.title + ": who drives " + name, end);
+      if (timeline.empty()) continue;
+      const std::string file = robots_.size() == 1 ? "arbitration.svg" : "arbitration-" + name + ".svg";
+      if (!(std::ofstream(run_folder() / file) << timeline))
+        log().error("{} could not be written in {}", file, run_folder().string());
+    }
   }
 };
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 
+#include "builtin_interfaces/msg/Duration.hpp"
 #include "builtin_interfaces/msg/Time.hpp"
 #include "framework/component/time.hpp"
 #include "framework/geometry/pose2.hpp"
@@ -29,14 +30,24 @@ inline Time time_of(const builtin_interfaces::msg::Time& message) {
   return Time(std::chrono::seconds(message.sec) + Duration(message.nanosec));
 }
 
+inline builtin_interfaces::msg::Duration to_message(Duration duration) {
+  const builtin_interfaces::msg::Time parts = to_message(Time(duration));
+  builtin_interfaces::msg::Duration message;
+  message.sec = parts.sec;
+  message.nanosec = parts.nanosec;
+  return message;
+}
+
+inline Duration duration_of(const builtin_interfaces::msg::Duration& message) {
+  return std::chrono::seconds(message.sec) + Duration(message.nanosec);
+}
+
 inline void set_header(std_msgs::msg::Header& header, Time stamp, const std::string& frame) {
   header.stamp = to_message(stamp);
   header.frame_id = frame;
 }
 
-inline Vector2 position_of(const geometry_msgs::msg::Pose& pose) {
-  return {pose.position.x, pose.position.y};
-}
+inline Vector2 position_of(const geometry_msgs::msg::Pose& pose) { return {pose.position.x, pose.position.y}; }
 
 inline Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
   const auto& q = pose.orientation;

@@ -10,6 +10,7 @@
 #include "framework/kervan.hpp"
 #include "framework/runtime/container.hpp"
 #include "framework/test/harness.hpp"
+#include "kervan_msgs/msg/ArbitrationState.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "kervan_msgs/msg/Outline.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
@@ -33,6 +34,7 @@ class Script final : public Component {
   Output<sensor_msgs::msg::LaserScan> scan_{this, "r1/scan", qos::sensor, "Laser."};
   Output<tf2_msgs::msg::TFMessage> tf_{this, "/tf", qos::event, "Where the laser is mounted."};
   Output<kervan_msgs::msg::Outline> world_{this, "world", qos::latched, "World."};
+  Output<kervan_msgs::msg::ArbitrationState> arbitration_{this, "r1/arbitration", qos::event, "Who drives."};
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "Result."};
   Timer tick_{this, 50ms, &Script::on_tick};
 
@@ -52,6 +54,11 @@ class Script final : public Component {
     auto truth = odometry_at({x, 0.0, 0.0}, {1.0, 0.0});
     truth.header.stamp = geometry::to_message(now);
     truth_.publish(truth);
+    kervan_msgs::msg::ArbitrationState state;
+    state.behaviour = x < 0.5 ? "wall_follow" : "front_avoid";
+    state.priority = x < 0.5 ? 20 : 50;
+    if (x >= 0.5) state.waiting.emplace_back("wall_follow");
+    arbitration_.publish(state);
     sense(now);
     odom_.publish(odometry_at({x, 0.02, 0.0}));
     if (now < Time(2s)) return;
@@ -143,6 +150,17 @@ TEST(MapReportComponent, DrawsTheRunAtItsEnd) {
   EXPECT_TRUE(has(map, ">success</tspan>"));
   EXPECT_TRUE(has(map, ">reached the goal</tspan>"));
   EXPECT_TRUE(has(map, "M-1.0000,1.0000 L5.0000,1.0000")) << "the wall of the world";
+}
+
+TEST(MapReportComponent, ShowsWhichBehaviourWasInChargeWhereAndWhen) {
+  const TemporaryFolder folder;
+  run(folder.path, 3s);
+  const std::string map = content_of(folder.path / "map.svg");
+  EXPECT_TRUE(has(map, ">front_avoid</text>"));
+  EXPECT_TRUE(has(map, ">wall_follow</text>"));
+  const std::string timeline = content_of(folder.path / "arbitration.svg");
+  EXPECT_TRUE(has(timeline, ">lab: who drives r1</text>"));
+  EXPECT_TRUE(has(timeline, ">front_avoid</text>"));
 }
 
 TEST(MapReportComponent, MarksAnUnfinishedRunAsAborted) {
