@@ -76,6 +76,35 @@ TEST_F(ContainerVerb, AContainerThatDoesNotAnswerIsNamedWithThoseThatAreThere) {
   EXPECT_EQ(silent.err, "container 'two' did not answer within 200ms; there are: none\n");
 }
 
+TEST(ContainerVerbCall, ASimulatedWorldIsPausedChangedAndGoesOn) {
+  Supervised run(
+      "components:\n"
+      "  a: {type: test/beacon, params: {word: a is here}, remap: {out: /a, in: /b}}\n"
+      "  b: {type: test/beacon, params: {word: b is here}, remap: {out: /b, in: /a}}\n"
+      "  world:\n"
+      "    type: sim/world\n"
+      "    params: {map: worlds/hall.yaml, robots: {r1: {model: robots/p3dx.yaml, start: [2 m, 6 m, 0 deg]}}}\n"
+      "containers:\n"
+      "  sim: {components: [world, a]}\n"
+      "  other: {components: [b]}\n",
+      "sim");
+  run.wait_for("] heard ");
+  const auto call = [&](const std::string& what) {
+    return run_line(KERVAN_PROGRAM, "container call sim world " + what + " --timeout 60s", run.folder());
+  };
+  EXPECT_EQ(call("pause").out, "world  sim/world  degraded  paused on request\n");
+  run.wait_for("paused on request");
+  EXPECT_EQ(call("step steps=10").code, 0);
+  EXPECT_EQ(call("teleport robot=r1 pose='[12 m, 6 m, 90 deg]'").code, 0);
+  const Result refused = call("teleport robot=r1 pose='[0 m, 6 m, 90 deg]'");
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(refused.err, "refused by container 'sim': 'r1' would stand in an obstacle of hall\n");
+  EXPECT_EQ(call("resume").out, "world  sim/world  active\n");
+  EXPECT_EQ(call("resume").out, "already running\nworld  sim/world  active\n");
+  run.signal(SIGTERM);
+  run.wait();
+}
+
 TEST(ContainerVerbUsage, IsNamedWhenItIsWrong) {
   const Folder folder;
   const auto says = [&](const std::string& arguments) {
