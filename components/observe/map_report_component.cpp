@@ -12,6 +12,7 @@
 #include "components/observe/arbitration_log.hpp"
 #include "components/observe/decimal.hpp"
 #include "components/observe/map_drawing.hpp"
+#include "components/observe/outline.hpp"
 #include "components/observe/trajectory_csv.hpp"
 #include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
@@ -51,18 +52,6 @@ struct MapReportParams {
       {.min = 0.0, .max = 3600.0, .help = "Draws what the sensors saw every so often; 0: never."});
   }
 };
-
-DrawnWorld drawn(const kervan_msgs::msg::Outline& outline) {
-  DrawnWorld world;
-  for (const auto& s : outline.segments) world.walls.push_back({{s.x1, s.y1}, {s.x2, s.y2}});
-  for (const auto& c : outline.circles) world.circles.push_back({{c.x, c.y}, c.radius});
-  for (const auto& polygon : outline.polygons) {
-    Polyline corners;
-    for (const auto& corner : polygon.corners) corners.emplace_back(corner.x, corner.y);
-    world.polygons.push_back(std::move(corners));
-  }
-  return world;
-}
 
 /// The sensors of one robot: what they saw at the beginning and every `period` after it.
 class Sensors {
@@ -284,7 +273,7 @@ class MapReportComponent final : public Component {
     MapDrawing drawing;
     drawing.title = params_.title;
     drawing.nodes = params_.nodes;
-    if (const auto* world = world_.latest()) drawing.world = drawn(*world);
+    if (const auto* world = world_.latest()) drawing.world = drawn_world(*world);
     const auto* result = result_.latest();
     drawing.result = !result                                             ? "aborted"
                      : result->result == MissionOutcome::MISSION_SUCCESS ? "success"

@@ -6,6 +6,7 @@
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "deploy/cli/catalogue.hpp"
@@ -158,6 +159,28 @@ ordered_json summary(const RunOutcome& outcome) {
   return object;
 }
 
+/// What components have figured out about the run and left in its folder: figures-<component>.json, one object each.
+ordered_json figures(const fs::path& folder) {
+  std::map<std::string, fs::path> files;  // in order of their names
+  std::error_code ignored;
+  const std::string begin = "figures-", end = ".json";
+  for (const auto& entry : fs::directory_iterator(folder, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with(begin) && name.ends_with(end))
+      files[name.substr(begin.size(), name.size() - begin.size() - end.size())] = entry.path();
+  }
+  ordered_json figures = ordered_json::object();
+  for (const auto& [component, path] : files) {
+    std::ifstream file(path);
+    auto object = ordered_json::parse(file, nullptr, false);
+    if (object.is_object())
+      figures[component] = std::move(object);
+    else
+      std::cerr << path.string() << ": left out of the summary: it is no JSON object\n";
+  }
+  return figures;
+}
+
 void write_summary(const fs::path& folder, const ordered_json& object) {
   std::ofstream file(folder / "summary.json");
   file << object.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
@@ -242,7 +265,8 @@ int run(const RunRequest& request) {
     take_back(options.run_folder, made);
     throw;
   }
-  const ordered_json object = summary(outcome);
+  ordered_json object = summary(outcome);
+  if (ordered_json found = figures(options.run_folder); !found.empty()) object["figures"] = std::move(found);
   write_summary(options.run_folder, object);
   std::ostream& out = request.json ? std::cerr : std::cout;
   print_result(out, outcome, options.run_folder);

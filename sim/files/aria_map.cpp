@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "framework/component/error.hpp"
-#include "sim/files/image.hpp"
+#include "framework/map_file/image.hpp"
 #include "sim/files/ranges.hpp"
 
 namespace kervan::sim {
@@ -140,7 +140,7 @@ class AriaReader {
 
 Obstacles load_aria_map(const std::string& path) {
   try {
-    return parse_aria_map(read_file(path), path);
+    return parse_aria_map(map_file::read_file(path), path);
   } catch (const std::invalid_argument& error) {
     throw ConfigError({path, 0, 0}, error.what());
   }

@@ -8,10 +8,9 @@
 
 namespace kervan::sim {
 
-/// Reads a map by the rules of map_server: image, resolution, origin (with yaw), negate, occupied_thresh, free_thresh
-/// and mode (trinary, scale or raw). Cells that are occupied beyond occupied_thresh are solid, all others are free,
-/// unknown and transparent ones too. `folder` is where the file lies; the picture's path counts from there. Throws
-/// ConfigError at the place in the file that cannot be used.
+/// The map as an obstacle (map_file.hpp reads it): cells that are occupied beyond occupied_thresh are solid, all others
+/// are free, unknown and transparent ones too. `folder` is where the file lies; the picture's path counts from there.
+/// Throws ConfigError at the place in the file that cannot be used.
 Bitmap ros_map(const config::Node& file, const std::string& folder);
 
 /// The same from the file's path.

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "framework/config/node.hpp"
+#include "framework/map_file/image.hpp"
 #include "sim/files/aria_map.hpp"
-#include "sim/files/image.hpp"
 #include "sim/files/ranges.hpp"
 #include "sim/files/ros_map.hpp"
 
@@ -66,14 +66,15 @@ Bitmap bitmap(const config::Node& node, const std::string& folder) {
   const config::Node& picture = node.required("image");
   const std::string path = path_from(folder, picture.as_text());
   try {
-    const Image image = load_image(path);
+    const map_file::Image image = map_file::load_image(path);
     Bitmap map;
     map.cell = place.size.cwiseQuotient(Vector2(image.columns, image.rows));
     const Vector2 corner = place.pose * Vector2(-0.5 * place.size);
     map.origin = {corner.x(), corner.y(), place.pose.yaw};
     map.columns = image.columns;
     map.rows = image.rows;
-    map.solid = solid_pixels(image, [](Pixel pixel) { return pixel.opacity == 255 && pixel.shade < 128; });
+    map.solid = map_file::cells_of(
+        image, [](map_file::Pixel pixel) -> std::uint8_t { return pixel.opacity == 255 && pixel.shade < 128 ? 1 : 0; });
     return map;
   } catch (const std::invalid_argument& error) {
     picture.fail(path + ": " + error.what());
@@ -87,7 +88,7 @@ void add_map(const config::Node& node, const std::string& folder, Obstacles& obs
   const std::string path = path_from(folder, node.as_text());
   std::string text;
   try {
-    text = read_file(path);
+    text = map_file::read_file(path);
   } catch (const std::invalid_argument& error) {
     node.fail(path + ": " + error.what());
   }

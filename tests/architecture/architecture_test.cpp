@@ -32,16 +32,28 @@ struct Arrow {
 const std::vector<Arrow> arrows = {
     // Conversions between geometry and messages stand with geometry, for everybody who has messages at all.
     {"framework/geometry/messages.hpp", {"framework/geometry/", "framework/component/time.hpp", messages}},
+    // time.hpp is two aliases of std::chrono.
+    {"framework/geometry/pose_history.hpp", {"framework/geometry/", "framework/component/time.hpp"}},
     {"framework/geometry/.*", {"framework/geometry/"}, {"framework/geometry/messages.hpp"}},
     // The strict reader of files and what a manifest is made of: a library of their own, without DDS.
     {"framework/config/.*",
      {"framework/config/", "framework/geometry/", "framework/component/"},
      {"framework/component/component.hpp", "framework/component/ports.hpp", "framework/component/sample.hpp"}},
+    // Pictures and map_server's files: a library for the simulator's worlds and for maps.
+    {"framework/map_file/.*", {"framework/map_file/", "framework/config/", "framework/geometry/"}},
     {"framework/dds/.*", {"framework/dds/", "framework/component/", "framework/geometry/"}},
     // A component's public headers do not show what runs it; its .cpp files hand over to the runtime.
     {"framework/component/.*\\.hpp", {"framework/component/", "framework/geometry/", "framework/dds/"}},
     {"framework/.*", {"framework/", messages}, {"framework/config/"}},
 
+    // What the areas share: cells, and the files that maps are kept in.
+    {"components/grid/.*",
+     {own_folder, "framework/geometry/", "framework/map_file/"},
+     {"framework/geometry/messages.hpp"}},
+    // Messages that several components of an area read or write alike.
+    {"components/observe/outline\\.hpp", {own_folder, messages}},
+    {"components/mapping/map_ports\\.hpp",
+     {"components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // One shell around seven behaviours, each a declaration in its own component.
@@ -57,7 +69,8 @@ const std::vector<Arrow> arrows = {
     // Compiled for other processors: whatever inline functions they saw, the whole program might get.
     {"sim/ray_kernel_avx.*\\.cpp", {"sim/ray_kernel.hpp"}},
     // Worlds and robot models are configuration files; the simulator itself takes them as plain values.
-    {"sim/files/.*", {"sim/", "framework/config/", "framework/component/error.hpp", "framework/geometry/"}},
+    {"sim/files/.*",
+     {"sim/", "framework/config/", "framework/map_file/", "framework/component/error.hpp", "framework/geometry/"}},
     {"sim/.*", {"sim/", "framework/geometry/"}, {"sim/files/", "framework/geometry/messages.hpp"}},
 
     // The model knows manifests, not modules, and nothing that runs.
@@ -89,7 +102,8 @@ const std::vector<Fence> fences = {
     // Whoever logs: what runs components, and components in their handlers.
     {"spdlog/", {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
     {"CLI/", {"deploy/cli/main\\.cpp"}},
-    {"png.h", {"sim/files/image\\.cpp"}},
+    {"png.h", {"framework/map_file/image\\.cpp"}},
+    {"emmintrin.h", {"components/mapping/.*_kernel\\..pp"}},
     {"immintrin.h", {"sim/ray_kernel_avx.*\\.cpp"}},
     {"nlohmann/", {"deploy/.*", "tests/.*"}},
     {"gtest/", {"tests/.*"}},

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <random>
 
-#include "sim/files/image.hpp"
+#include "framework/map_file/image.hpp"
 
 namespace kervan::bench {
 
@@ -26,7 +26,7 @@ std::vector<std::uint8_t> random_discs() {
   return solid;
 }
 
-std::vector<std::uint8_t> doubled(const sim::Image& image) {
+std::vector<std::uint8_t> doubled(const map_file::Image& image) {
   std::vector<std::uint8_t> solid;
   for (int row = side - 1; row >= 0; --row)
     for (int column = 0; column < side; ++column)
@@ -46,7 +46,7 @@ std::optional<std::string> test_data(const std::string& file) {
 sim::Bitmap cave(double extent) {
   sim::Bitmap map{{}, sim::Vector2::Constant(extent / side), side, side, {}};
   const auto file = test_data("stage/cave.png");
-  map.solid = file ? doubled(sim::load_image(*file)) : random_discs();
+  map.solid = file ? doubled(map_file::load_image(*file)) : random_discs();
   for (std::size_t i = 0; i < side; ++i)
     map.solid[i] = map.solid[(side - 1) * side + i] = map.solid[i * side] = map.solid[i * side + side - 1] = 1;
   return map;

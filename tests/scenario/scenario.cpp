@@ -61,11 +61,14 @@ Scenario load_scenario(const fs::path& file) {
     if (*scenario.first_seed > *scenario.last_seed) seeds->fail("the first is above the last");
   }
   const Node& expect = root.required("expect");
-  expect.only_keys({"result", "exit_code", "robots"});
+  expect.only_keys({"result", "exit_code", "robots", "figures"});
   scenario.result = expect.required("result").as_choice({"success", "failed", "aborted"});
   scenario.exit_code = static_cast<int>(expect.required("exit_code").as_integer());
   if (const Node* robots = expect.optional("robots"))
     for (const Node& expected : robots->map()) scenario.robots[expected.name] = robot(expected);
+  if (const Node* components = expect.optional("figures"))
+    for (const Node& component : components->map())
+      for (const Node& figure : component.map()) scenario.figures[component.name][figure.name] = bounds(figure);
   return scenario;
 }
 

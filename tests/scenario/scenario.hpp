@@ -39,6 +39,7 @@ struct Scenario {
   std::string result;
   int exit_code = 0;
   std::map<std::string, RobotExpectation> robots;
+  std::map<std::string, std::map<std::string, Bounds>> figures;  ///< of components, as summary.json has them
 };
 
 /// Throws ConfigError for anything that a scenario cannot hold.

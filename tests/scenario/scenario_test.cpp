@@ -123,6 +123,12 @@ TEST_P(ScenarioTest, EndsAsExpected) {
   EXPECT_EQ(run.result.err.find("warning ["), std::string::npos) << run.result.err;
   EXPECT_EQ(run.result.err.find("error ["), std::string::npos) << run.result.err;
   for (const auto& [name, expected] : scenario.robots) check_robot(run, name, expected);
+  for (const auto& [component, figures] : scenario.figures)
+    for (const auto& [figure, bounds] : figures) {
+      const json value = run.summary.value(json::json_pointer("/figures/" + component + "/" + figure), json());
+      ASSERT_TRUE(value.is_number()) << component << "." << figure << " is " << value << " in " << run.summary;
+      expect_within(value.get<double>(), bounds, component + "." + figure);
+    }
 
   const double speed = run.summary["simulated_s"].get<double>() / run.summary["wall_s"].get<double>();
   std::cout << scenario.name << ": " << static_cast<int>(speed) << "x real time\n";

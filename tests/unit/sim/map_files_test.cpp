@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <fstream>
 
+#include "framework/map_file/image.hpp"
 #include "sim/files/aria_map.hpp"
-#include "sim/files/image.hpp"
 #include "sim/files/world_file.hpp"
 #include "tests/unit/config/refused.hpp"
 
@@ -95,7 +95,7 @@ TEST_F(MapFiles, InRawModeAShadeIsAProbabilityInPercent) {
 
 TEST_F(MapFiles, PicturesAreReadAlikeAsPngAndPgm) {
   for (const std::string& bytes : {small_pgm, small_png, std::string("P2\n3 2\n100\n100 100 100\n0 80#grey\n100\n")}) {
-    const Image image = parse_image(bytes);
+    const map_file::Image image = map_file::parse_image(bytes);
     ASSERT_EQ(image.columns, 3);
     ASSERT_EQ(image.rows, 2);
     EXPECT_EQ(image.pixels[0].shade, 255);
@@ -103,7 +103,7 @@ TEST_F(MapFiles, PicturesAreReadAlikeAsPngAndPgm) {
     EXPECT_NEAR(image.pixels[4].shade, 205, 1);
     EXPECT_EQ(image.pixels[4].opacity, 255);
   }
-  const Image wide = parse_image(std::string("P5 2 1 65535\n") + "\xff\xff" + std::string(2, '\0'));
+  const map_file::Image wide = map_file::parse_image(std::string("P5 2 1 65535\n") + "\xff\xff" + std::string(2, '\0'));
   EXPECT_EQ(wide.pixels[0].shade, 255);
   EXPECT_EQ(wide.pixels[1].shade, 0);
 }

@@ -1,38 +1,37 @@
-#include "sim/files/image.hpp"
+#include "framework/map_file/image.hpp"
 
 #include <png.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
 #include <stdexcept>
 
-#include "sim/bitmap.hpp"
-
-namespace kervan::sim {
+namespace kervan::map_file {
 
 namespace {
 
 void require_size(std::int64_t columns, std::int64_t rows) {
   if (columns < 1 || rows < 1) throw std::invalid_argument("the picture has no pixels");
-  if (columns > most_cells || rows > most_cells || columns * rows > most_cells)
+  if (columns > most_pixels || rows > most_pixels || columns * rows > most_pixels)
     throw std::invalid_argument("the picture has " + std::to_string(columns) + " x " + std::to_string(rows) +
-                                " pixels; allowed: " + std::to_string(most_cells));
+                                " pixels; allowed: " + std::to_string(most_pixels));
 }
 
 /// libpng's own structure, and what must be freed with it.
-struct PngReader {
+struct PngImage {
   png_image image{};
-  PngReader() { image.version = PNG_IMAGE_VERSION; }
-  ~PngReader() { png_image_free(&image); }
-  PngReader(const PngReader&) = delete;
-  PngReader& operator=(const PngReader&) = delete;
+  PngImage() { image.version = PNG_IMAGE_VERSION; }
+  ~PngImage() { png_image_free(&image); }
+  PngImage(const PngImage&) = delete;
+  PngImage& operator=(const PngImage&) = delete;
 
   [[noreturn]] void fail() const { throw std::invalid_argument("not a readable PNG: " + std::string(image.message)); }
 };
 
 Image parse_png(const std::string& bytes) {
-  PngReader reader;
+  PngImage reader;
   png_image& png = reader.image;
   if (!png_image_begin_read_from_memory(&png, bytes.data(), bytes.size())) reader.fail();
   require_size(png.width, png.height);
@@ -89,8 +88,8 @@ class PgmNumbers {
 Image parse_pgm(const std::string& bytes) {
   PgmNumbers numbers(bytes, 2);
   Image image;
-  image.columns = numbers.next("width", static_cast<int>(most_cells));
-  image.rows = numbers.next("height", static_cast<int>(most_cells));
+  image.columns = numbers.next("width", static_cast<int>(most_pixels));
+  image.rows = numbers.next("height", static_cast<int>(most_pixels));
   require_size(image.columns, image.rows);
   const int brightest = numbers.next("brightest value", 65535);
   if (brightest < 1) throw std::invalid_argument("not a readable PGM: the brightest value is 0");
@@ -119,7 +118,43 @@ Image parse_pgm(const std::string& bytes) {
   return image;
 }
 
+/// What libpng wants to write from: grey, or grey with opacity where a pixel is not opaque.
+std::vector<std::uint8_t> png_buffer(const Image& image, bool with_opacity) {
+  std::vector<std::uint8_t> buffer;
+  buffer.reserve(image.pixels.size() * (with_opacity ? 2 : 1));
+  for (const Pixel& pixel : image.pixels) {
+    buffer.push_back(pixel.shade);
+    if (with_opacity) buffer.push_back(pixel.opacity);
+  }
+  return buffer;
+}
+
 }  // namespace
+
+std::string to_png(const Image& image) {
+  require_size(image.columns, image.rows);
+  const bool with_opacity =
+      std::any_of(image.pixels.begin(), image.pixels.end(), [](const Pixel& pixel) { return pixel.opacity != 255; });
+  const std::vector<std::uint8_t> buffer = png_buffer(image, with_opacity);
+  PngImage writer;
+  png_image& png = writer.image;
+  png.width = static_cast<png_uint_32>(image.columns);
+  png.height = static_cast<png_uint_32>(image.rows);
+  png.format = with_opacity ? PNG_FORMAT_GA : PNG_FORMAT_GRAY;
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
+  std::string bytes(size, '\0');
+  if (!png_image_write_to_memory(&png, bytes.data(), &size, 0, buffer.data(), 0, nullptr))
+    throw std::invalid_argument("cannot be written as PNG: " + std::string(png.message));
+  bytes.resize(size);
+  return bytes;
+}
+
+std::string to_pgm(const Image& image) {
+  require_size(image.columns, image.rows);
+  std::string bytes = "P5\n" + std::to_string(image.columns) + ' ' + std::to_string(image.rows) + "\n255\n";
+  for (const Pixel& pixel : image.pixels) bytes.push_back(static_cast<char>(pixel.shade));
+  return bytes;
+}
 
 std::string read_file(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
@@ -141,4 +176,4 @@ Image parse_image(const std::string& bytes) {
   throw std::invalid_argument("neither a PNG nor a PGM (P2, P5) picture");
 }
 
-}  // namespace kervan::sim
+}  // namespace kervan::map_file

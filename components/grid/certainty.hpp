@@ -1,0 +1,34 @@
+/// The certainty values of HIMM (Borenstein and Koren 1991, "Histogramic in-motion mapping"): a counter for each cell.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+namespace kervan::grid {
+
+inline constexpr int most_certain = 15;
+inline constexpr int certainty_up = 3;    ///< for an echo from the cell
+inline constexpr int certainty_down = 1;  ///< for an echo from behind it
+
+/// 0 .. 15, and whether anything was ever heard of the cell.
+class Certainty {
+ public:
+  int value() const { return state_ == 0 ? 0 : state_ - 1; }
+  bool known() const { return state_ != 0; }
+
+  void raise() { state_ = static_cast<std::uint8_t>(std::min(value() + certainty_up, most_certain) + 1); }
+  void lower() { state_ = static_cast<std::uint8_t>(std::max(int{state_}, 1 + certainty_down) - certainty_down); }
+
+  bool operator==(const Certainty&) const = default;
+
+ private:
+  std::uint8_t state_ = 0;  // 0: unknown; else 1 + the value
+};
+
+/// The certainty value in fifteenths, as per cent; -1 if nothing is known.
+inline std::int8_t percent_of(const Certainty& cell) {
+  return cell.known() ? static_cast<std::int8_t>((100 * cell.value() + most_certain / 2) / most_certain)
+                      : std::int8_t{-1};
+}
+
+}  // namespace kervan::grid

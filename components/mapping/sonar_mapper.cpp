@@ -1,0 +1,155 @@
+#include "components/mapping/sonar_mapper.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "components/grid/occupancy.hpp"
+#include "components/mapping/cell_walk.hpp"
+#include "components/mapping/cone_kernel.hpp"
+
+namespace kervan::mapping {
+namespace {
+
+std::int16_t empty_log_odds(const SonarModel& model, double r, double alpha) {
+  return static_cast<std::int16_t>(-grid::log_odds_of(model.counted_empty(r, alpha)));
+}
+
+std::int16_t occupied_log_odds(const SonarModel& model, double r, double alpha) {
+  return grid::log_odds_of(model.counted_occupied(r, alpha));
+}
+
+/// What is certain leaves a doubt, and what Bayes' rule would not count does not count here either: weak masses far off
+/// the axis mark arcs that nothing contradicts.
+float mass(const SonarModel& model, double p) {
+  if (!model.params().literal && !(p > 0.5)) return 0.0f;
+  return static_cast<float>(std::clamp(p, 0.0, 1.0 - double{grid::least_unknown}));
+}
+
+float empty_mass(const SonarModel& model, double r, double alpha) { return mass(model, model.empty(r, alpha)); }
+
+float occupied_mass(const SonarModel& model, double r, double alpha) {
+  const double p = model.occupied(r, alpha);
+  return model.params().record_above > 0.0 && !(p > model.params().record_above) ? 0.0f : mass(model, p);
+}
+
+std::int16_t millimetres(double metres) {
+  return static_cast<std::int16_t>(std::lround(std::clamp(1000.0 * metres, -1.0, 32766.0)));
+}
+
+/// The cone of a reading, added to cells of either kind; false if there is no memory for it.
+template <class Value, class Weight>
+bool add_to(grid::Grid<Value>& cells, const grid::Cell& tip, const Cone<Weight>& cone, ConeReading reading) {
+  const std::size_t count = cone.up_to(std::max<int>(reading.occupied_to, reading.empty_below - 1));
+  if (count == 0) return true;
+  const grid::CellBox box = cone.boxes[count - 1].moved_by(tip);
+  if (cells.cover(grid::united(box, {tip.x, tip.y, 1, 1})) == grid::Growth::refused) return false;
+  add_cone(cells.place(tip), cells.stride(), cone, count, reading);
+  cells.touch(box);
+  return true;
+}
+
+}  // namespace
+
+SonarMapper::SonarMapper(const SonarMapperParams& params)
+    : params_(params),
+      model_(params.model),
+      log_odds_cones_(model_, params.resolution, empty_log_odds, occupied_log_odds),
+      mass_cones_(model_, params.resolution, empty_mass, occupied_mass),
+      cells_(grid::Grid<grid::LogOdds>(params.resolution, 0, params.most_bytes)) {
+  if (!(params.resolution > 0.0)) throw std::invalid_argument("a cell needs a positive side");
+  if (params.update == UpdateRule::dempster_shafer)
+    cells_ = grid::Grid<grid::MassCell>(params.resolution, {}, params.most_bytes);
+  else if (params.update == UpdateRule::himm)
+    cells_ = grid::Grid<grid::Certainty>(params.resolution, {}, params.most_bytes);
+}
+
+ReadingResult SonarMapper::add(const geometry::Pose2& transducer, double range, const SonarLimits& limits) {
+  if (std::isnan(range)) return ReadingResult::not_fired;
+  if (range < limits.min_range || range < 0.0) return ReadingResult::refused_range;
+  if (!grid::has_cell(transducer.position()) || !std::isfinite(transducer.yaw)) return ReadingResult::refused_place;
+  const bool echo = range < limits.max_range && range < params_.model.max_range;
+  Along along{grid::cell_of(transducer.position(), params_.resolution),
+              transducer.yaw,
+              geometry::heading(transducer.yaw),
+              0.0,
+              0.0,
+              -1.0};
+  // The cone begins in the middle of its cell: what the transducer is ahead of that, the cone is longer.
+  const double ahead = (transducer.position() - grid::center_of(along.tip, params_.resolution)).dot(along.direction);
+  if (echo) {
+    const RegionBorders borders = model_.borders(range);
+    along.empty_below = borders.empty_below + ahead;
+    along.occupied_to = borders.occupied_to + ahead;
+    if (borders.occupied_to > borders.empty_below) along.echo = range + ahead;
+  } else {
+    along.empty_below = along.occupied_to =
+        std::min({params_.no_echo_limit, limits.max_range, params_.model.max_range}) + ahead;
+  }
+  const bool added = std::visit([&](auto& cells) { return add(cells, along); }, cells_);
+  return !added ? ReadingResult::refused_memory : echo ? ReadingResult::echo : ReadingResult::no_echo;
+}
+
+bool SonarMapper::add(grid::Grid<grid::LogOdds>& cells, const Along& reading) {
+  return add_to(cells, reading.tip, log_odds_cones_.at(reading.yaw),
+                {millimetres(reading.empty_below), millimetres(reading.echo < 0.0 ? -1.0 : reading.occupied_to)});
+}
+
+bool SonarMapper::add(grid::Grid<grid::MassCell>& cells, const Along& reading) {
+  return add_to(cells, reading.tip, mass_cones_.at(reading.yaw),
+                {millimetres(reading.empty_below), millimetres(reading.echo < 0.0 ? -1.0 : reading.occupied_to)});
+}
+
+bool SonarMapper::add(grid::Grid<grid::Certainty>& cells, const Along& reading) {
+  const double length = (reading.echo < 0.0 ? reading.empty_below : reading.echo) / params_.resolution;
+  if (length < 0.0) return true;
+  CellWalk walk(reading.tip, reading.direction, length);
+  const grid::CellBox box = walk.box();
+  if (cells.cover(box) == grid::Growth::refused) return false;
+  grid::Certainty* const tip = cells.place(reading.tip);
+  for (; !walk.at_end(); walk.step()) tip[walk.offset(cells.stride())].lower();
+  grid::Certainty& end = tip[walk.offset(cells.stride())];
+  if (reading.echo < 0.0)
+    end.lower();
+  else
+    end.raise();
+  cells.touch(box);
+  return true;
+}
+
+grid::CellBox SonarMapper::box() const {
+  return std::visit([](const auto& cells) { return cells.box(); }, cells_);
+}
+
+std::vector<grid::Cell> SonarMapper::take_touched() {
+  return std::visit([](auto& cells) { return cells.take_touched(); }, cells_);
+}
+
+void SonarMapper::read_percent(const grid::CellBox& box, std::span<std::int8_t> percent) const {
+  std::visit([&](const auto& cells) { grid::read_percent(cells, box, percent); }, cells_);
+}
+
+int readings_to_clear(const SonarMapperParams& params, double r, double alpha) {
+  constexpr int never = std::numeric_limits<int>::max();
+  const SonarModel model(params.model);
+  if (r > params.model.max_range || std::abs(alpha) > params.model.half_aperture) return never;
+  switch (params.update) {
+    case UpdateRule::bayes: {
+      const int weight = -empty_log_odds(model, r, alpha);
+      return weight <= 0 ? never : (std::numeric_limits<std::int16_t>::max() + weight - 1) / weight;
+    }
+    case UpdateRule::dempster_shafer: {
+      const double weight = double{empty_mass(model, r, alpha)};
+      if (!(weight > 0.0)) return never;
+      grid::Masses masses{1.0 - double{grid::least_unknown}, 0.0};
+      int readings = 0;
+      for (; masses.occupied >= masses.empty; ++readings) masses = grid::combine(masses, {0.0, weight}).masses;
+      return readings;
+    }
+    case UpdateRule::himm: return alpha == 0.0 ? (grid::most_certain + 1) / 2 / grid::certainty_down : never;
+  }
+  return never;
+}
+
+}  // namespace kervan::mapping
