@@ -1,6 +1,8 @@
 /// Where a body was at a time, from the poses that were told of it.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
 #include <deque>
 #include <optional>
 
@@ -40,8 +42,8 @@ class PoseHistory {
   /// Nothing before the first and after the last pose: nobody is asked to guess.
   std::optional<Pose2> at(Time time) const {
     if (poses_.empty() || time < first() || time > last()) return std::nullopt;
-    std::size_t next = 0;  // few poses, and the newest are asked for
-    for (next = poses_.size() - 1; next > 0 && poses_[next - 1].time >= time;) --next;
+    std::size_t next = poses_.size() - 1;  // they are few, and the newest are asked for
+    while (next > 0 && poses_[next - 1].time >= time) --next;
     if (poses_[next].time == time) return poses_[next].pose;
     const Timed &a = poses_[next - 1], &b = poses_[next];
     return between(a.pose, b.pose, seconds(time - a.time) / seconds(b.time - a.time));
