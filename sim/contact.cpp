@@ -16,8 +16,8 @@ constexpr double doubt = 1e-9;         // m; more than the rounding of sums of d
 
 Body::Body(const Outline& outline, const Pose2& start, const Surroundings& around, bool turns)
     : outline_(outline), turns_(turns), yaw_(start.yaw), pose_(start) {
-  Blocker blocker;
-  if (!try_pose(start, around, blocker))
+  Hindrances hindrances{around};
+  if (!try_pose(start, hindrances))
     throw std::invalid_argument("the body does not fit between the obstacles at its start");
 }
 
@@ -27,21 +27,32 @@ double Body::length(const Motion& motion) const {
   return std::abs(motion.distance) + outline_.circumradius() * std::abs(motion.turn);
 }
 
-std::optional<Room> Body::room_at(const Pose2& pose, const Surroundings& around, Blocker& blocker) const {
+Room Body::room_at(const Pose2& pose, const Surroundings& around, bool world) const {
+  // Beyond what it heeds any distance does, if only it is more than that at which a touch ends.
+  return world ? around.room(outline_, hull(pose))
+               : around.exact_room_among_bodies(outline_, hull(pose), heeds() + released);
+}
+
+std::optional<Room> Body::free_room_at(const Pose2& pose, Hindrances& hindrances) const {
+  auto& [around, world, blocker] = hindrances;
   if (blocker && around.still_in_the_way(*blocker, outline_, hull(pose), skin)) return std::nullopt;
-  const Room room = around.room(outline_, hull(pose));
+  const Room room = room_at(pose, around, world);
   if (room.all.distance > skin) return room;
   blocker = room;
   return std::nullopt;
 }
 
-bool Body::try_pose(const Pose2& pose, const Surroundings& around, Blocker& blocker) {
-  const std::optional<Room> room = room_at(pose, around, blocker);
+void Body::note(const Room& room, bool world) {
+  if (world) room_ = room.world;
+  clear_ = room.all.distance;
+  min_clearance_ = std::min(min_clearance_, clear_);
+}
+
+bool Body::try_pose(const Pose2& pose, Hindrances& hindrances) {
+  const std::optional<Room> room = free_room_at(pose, hindrances);
   if (!room) return false;
   pose_ = pose;
-  room_ = room->world;
-  clear_ = room->all.distance;
-  min_clearance_ = std::min(min_clearance_, clear_);
+  note(*room, hindrances.world);
   return true;
 }
 
@@ -59,11 +70,11 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
 
   const int moves = room - total > skin ? 1 : static_cast<int>(std::ceil(total / longest_move));
   Motion part{wanted.distance / moves, wanted.turn / moves};
-  Blocker blocker;
+  Hindrances hindrances{around, !far_from_world(total)};
   Moved all;
   for (int i = 0; i < moves; ++i) {
     const bool at_rest = part.distance == 0.0 && part.turn == 0.0;
-    const Moved now = move_shortly(part, around, blocker);
+    const Moved now = move_shortly(part, hindrances);
     all.motion.distance += now.motion.distance;
     all.motion.turn += now.motion.turn;
     all.stopped_driving |= now.stopped_driving;
@@ -72,38 +83,38 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
     if (all.stopped_turning) part.turn = 0.0;
     if (at_rest) break;  // the other parts would do the same
   }
+  if (!hindrances.world) room_ -= total;
   if (clear_ > released) touching_ = false;
   return all;
 }
 
-Moved Body::move_shortly(const Motion& wanted, const Surroundings& around, Blocker& blocker) {
-  if (try_pose(advance(pose_, wanted), around, blocker)) return {wanted};
+Moved Body::move_shortly(const Motion& wanted, Hindrances& hindrances) {
+  if (try_pose(advance(pose_, wanted), hindrances)) return {wanted};
 
-  const double free = drive_up_to_obstacle(wanted, around, blocker);
-  if (!touching_) begin_contact(around);
+  const double free = drive_up_to_obstacle(wanted, hindrances);
+  if (!touching_) begin_contact(hindrances.around);
   const Motion driven{free * wanted.distance, free * wanted.turn};
   const Motion rest{wanted.distance - driven.distance, wanted.turn - driven.turn};
   if (wanted.distance != 0.0 && wanted.turn != 0.0) {
-    if (try_pose(advance(pose_, {0.0, rest.turn}), around, blocker))
-      return {{driven.distance, wanted.turn}, true, false};
-    if (try_pose(advance(pose_, {rest.distance, 0.0}), around, blocker))
+    if (try_pose(advance(pose_, {0.0, rest.turn}), hindrances)) return {{driven.distance, wanted.turn}, true, false};
+    if (try_pose(advance(pose_, {rest.distance, 0.0}), hindrances))
       return {{wanted.distance, driven.turn}, false, true};
   }
   return {driven, wanted.distance != 0.0, wanted.turn != 0.0};
 }
 
-double Body::drive_up_to_obstacle(const Motion& motion, const Surroundings& around, Blocker& blocker) {
+double Body::drive_up_to_obstacle(const Motion& motion, Hindrances& hindrances) {
   const Pose2 start = pose_;
   const double total = length(motion);
   double free = 0.0, blocked = 1.0;
   // Whoever pushes against something cannot go the least part of the way: then nothing else needs to be tried.
   double least = 1.0;
   while (least * total > skin) least *= 0.5;
-  if (!room_at(advance(start, {least * motion.distance, least * motion.turn}), around, blocker)) return free;
+  if (!free_room_at(advance(start, {least * motion.distance, least * motion.turn}), hindrances)) return free;
   while ((blocked - free) * total > skin) {
     const double middle = 0.5 * (free + blocked);
     const Pose2 pose = advance(start, {middle * motion.distance, middle * motion.turn});
-    (try_pose(pose, around, blocker) ? free : blocked) = middle;
+    (try_pose(pose, hindrances) ? free : blocked) = middle;
   }
   return free;
 }
@@ -117,8 +128,8 @@ void Body::begin_contact(const Surroundings& around) {
 
 bool Body::put(const Pose2& pose, const Surroundings& around) {
   const double yaw = std::exchange(yaw_, pose.yaw);
-  Blocker blocker;
-  if (!try_pose(pose, around, blocker)) {
+  Hindrances hindrances{around};
+  if (!try_pose(pose, hindrances)) {
     yaw_ = yaw;
     return false;
   }
@@ -131,10 +142,8 @@ void Body::look(const Surroundings& around) {
   // Whether it touches the world its last movement has found out.
   const bool touch_may_end = touching_ && (among_bodies < released || !last_.other.empty());
   if (!touch_may_end && !(among_bodies < min_clearance_)) return;
-  const Room room = around.room(outline_, hull());
-  room_ = room.world;
-  clear_ = room.all.distance;
-  min_clearance_ = std::min(min_clearance_, clear_);
+  const bool world = !far_from_world(0.0);
+  note(room_at(pose_, around, world), world);
   if (clear_ > released) touching_ = false;
 }
 

@@ -78,16 +78,25 @@ class Body {
 
  private:
   Pose2 hull(const Pose2& pose) const { return turns_ ? pose : Pose2{pose.x, pose.y, yaw_}; }
-  /// What was in the way last, within one movement: it is likely to be so again.
-  using Blocker = std::optional<Room>;
-  /// The room at the pose, if it is free.
-  std::optional<Room> room_at(const Pose2& pose, const Surroundings& around, Blocker& blocker) const;
+  /// What matters during one movement.
+  struct Hindrances {
+    const Surroundings& around;
+    bool world = true;                           // false: it is too far away to make a difference
+    std::optional<Room> blocker = std::nullopt;  // what was in the way last: it is likely to be so again
+  };
+  /// True if the world makes no difference to a body that moves by this length.
+  bool far_from_world(double length) const { return room_ - length > heeds(); }
+  /// Exact as far as it matters.
+  Room room_at(const Pose2& pose, const Surroundings& around, bool world) const;
+  /// The same at a pose that is free.
+  std::optional<Room> free_room_at(const Pose2& pose, Hindrances& hindrances) const;
+  void note(const Room& room, bool world);
   /// Takes the pose if it is free.
-  bool try_pose(const Pose2& pose, const Surroundings& around, Blocker& blocker);
+  bool try_pose(const Pose2& pose, Hindrances& hindrances);
   /// The part of a blocked arc, in [0, 1), that is free; takes the pose there.
-  double drive_up_to_obstacle(const Motion& motion, const Surroundings& around, Blocker& blocker);
+  double drive_up_to_obstacle(const Motion& motion, Hindrances& hindrances);
   /// One movement that is short enough not to jump over anything.
-  Moved move_shortly(const Motion& wanted, const Surroundings& around, Blocker& blocker);
+  Moved move_shortly(const Motion& wanted, Hindrances& hindrances);
   void begin_contact(const Surroundings& around);
 
   Outline outline_;

@@ -69,15 +69,22 @@ class Bundle {
 
 Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose) {
   const Pose2 to_body = pose.inverse();
+  const double c = std::cos(to_body.yaw), s = std::sin(to_body.yaw);
+  const auto in_body = [&](const Vector2& p) {
+    return Vector2(to_body.x + c * p.x() - s * p.y(), to_body.y + s * p.x() + c * p.y());
+  };
   // One body wholly inside the other: no edges meet then.
-  if (outline.contains(to_body * bodies.center(other)) ||
-      bodies.outline(other).contains(bodies.pose(other).inverse() * pose.position()))
+  const double apart = (bodies.center(other) - pose.position()).norm();
+  if (apart <= std::max(outline.circumradius(), bodies.radius(other)) + doubt &&
+      (outline.contains(in_body(bodies.center(other))) ||
+       bodies.outline(other).contains(bodies.pose(other).inverse() * pose.position())))
     return {0.0, pose.position(), pose.position()};
   Clearance nearest;
   const std::span<const Vector2> corners = bodies.corners(other);
   for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Segment side = edge(corners, i);
-    const Clearance found = outline.clearance(Segment{to_body * side.a, to_body * side.b});
+    const Segment side{in_body(edge(corners, i).a), in_body(edge(corners, i).b)};
+    if (outline.separation(side) > nearest.distance + doubt) continue;
+    const Clearance found = outline.clearance(side);
     if (found.distance < nearest.distance) nearest = found;
   }
   nearest.on_obstacle = pose * nearest.on_obstacle;
@@ -89,7 +96,20 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   Room room;
   room.all = world_.clearance(outline, pose, &room.shape);
   room.world = room.all.distance;
-  if (!bodies_) return room;
+  take_room(outline, pose, room);
+  return room;
+}
+
+Room Surroundings::exact_room_among_bodies(const Outline& outline, const Pose2& pose, double within) const {
+  Room room;
+  room.all.distance = within;
+  take_room(outline, pose, room);
+  return room;
+}
+
+/// What the bodies leave of the room.
+void Surroundings::take_room(const Outline& outline, const Pose2& pose, Room& room) const {
+  if (!bodies_) return;
   const auto consider = [&](std::size_t body) {
     if (left_out(body)) return;
     const double radii = outline.circumradius() + bodies_->radius(body);
@@ -107,7 +127,7 @@ Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   for (double reach = std::min(usual, room.all.distance);; reach *= 2.0) {
     const Vector2 extent = Vector2::Constant(std::min(reach, room.all.distance) + radii);
     const bool all = bodies_->visit_box(pose.position() - extent, pose.position() + extent, consider);
-    if (all || room.all.distance <= reach) return room;
+    if (all || room.all.distance <= reach) return;
   }
 }
 

@@ -37,6 +37,10 @@ class Surroundings {
   /// How much room the body has at `pose`. Exact; of bodies that are equally near the first by name.
   Room room(const Outline& outline, const Pose2& pose) const;
 
+  /// The same among the other bodies alone, as far as `within`: farther away nobody is looked for, and the distance is
+  /// `within`.
+  Room exact_room_among_bodies(const Outline& outline, const Pose2& pose, double within) const;
+
   /// True if what took the room at another pose leaves no more than `within` at this one. Bodies have not moved since.
   bool still_in_the_way(const Room& room, const Outline& outline, const Pose2& pose, double within) const;
 
@@ -49,6 +53,7 @@ class Surroundings {
   void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
 
  private:
+  void take_room(const Outline& outline, const Pose2& pose, Room& room) const;
   bool left_out(std::size_t body) const { return body >= first_ && body < last_; }
 
   const World& world_;
