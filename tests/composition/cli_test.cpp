@@ -64,9 +64,9 @@ TEST_F(Program, SaysWhereAValueOfAProfileComesFrom) {
 TEST_F(Program, ShowsWhoMeetsWhomAndWhoIsAlone) {
   const Result result = kervan("check lab");
   for (const char* row :
-       {"topic            type                              writer                  reader ",
-        "/r1/sonar        kervan_msgs::msg::SonarArray      world.r1/sonar          r1/control.sonar ",
-        "/tf              tf2_msgs::msg::TFMessage          world./tf               -  "})
+       {"topic            type                                writer                  reader ",
+        "/r1/sonar        kervan_msgs::msg::SonarArray        world.r1/sonar          r1/control.sonar ",
+        "/tf              tf2_msgs::msg::TFMessage            world./tf               -  "})
     EXPECT_NE(result.output.find(row), std::string::npos) << row << "\n" << result.output;
   EXPECT_NE(kervan("check lab --json", without_errors)
                 .output.find(R"({"topic":"/tf","type":"tf2_msgs::msg::TFMessage","writer":"world./tf","reader":null,)"
@@ -105,7 +105,7 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "rnu lab",
       "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd");
   expect_refused("run lba",
-                 "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, lab");
+                 "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, 10_wall_follow, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
   expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
   expect_refused("run lab --place left=wrold",
@@ -127,9 +127,9 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
                  "--arg controller=vfh: vfh is not one of potential_classic, potential_gecui");
   expect_refused(
       "check lab --explain /r1/sonra",
-      "--explain /r1/sonra: lab has no such topic; did you mean '/r1/sonar'? it has: /clock, /outline, /r1/clearance, "
-      "/r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, /r1/odom, /r1/route, /r1/sonar, /r1/truth, "
-      "/r1/waypoint, /result, /tf");
+      "--explain /r1/sonra: lab has no such topic; did you mean '/r1/sonar'? it has: /clock, /outline, "
+      "/r1/arbitration, /r1/clearance, /r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, /r1/odom, "
+      "/r1/route, /r1/sonar, /r1/truth, /r1/waypoint, /result, /tf");
 }
 
 TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {

@@ -90,7 +90,7 @@ TEST(GeneratedType, NamesItsFieldsWithUnitsAndKeys) {
   fields([&seen](const Field& field,
                  const auto&) { seen += std::string(field.key ? "*" : "") + field.name + '[' + field.unit + "] "; },
          tile);
-  EXPECT_EQ(seen, "*tile_x[] *tile_y[] header[] revision[] resolution[m] width[] height[] data[] ");
+  EXPECT_EQ(seen, "*tile_x[] *tile_y[] header[] session[] revision[] resolution[m] width[] height[] data[] ");
 }
 
 TEST(TypeSupportOf, HasTheNamesOfRos2) {
