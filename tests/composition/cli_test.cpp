@@ -105,7 +105,8 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "rnu lab",
       "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd");
   expect_refused("run lba",
-                 "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, 10_wall_follow, lab");
+                 "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, "
+                 "10_wall_follow, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
   expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
   expect_refused("run lab --place left=wrold",
