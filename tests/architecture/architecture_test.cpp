@@ -100,7 +100,8 @@ const std::vector<Fence> fences = {
     {"idlc/", {"idl/generator/.*"}},
     {"yaml-cpp/", {"framework/config/yaml\\.cpp"}},
     // Whoever logs: what runs components, and components in their handlers.
-    {"spdlog/", {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
+    {"spdlog/",
+     {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
     {"CLI/", {"deploy/cli/main\\.cpp"}},
     {"png.h", {"framework/map_file/image\\.cpp"}},
     {"emmintrin.h", {"components/mapping/.*_kernel\\..pp"}},

@@ -203,8 +203,9 @@ TEST_F(BadInput, Options) {
   expect_refused({"run"}, "kervan run: a composition is missing; name a shipped one, such as lab, or a file; see ");
   expect_refused({}, "a command is missing: run, check, describe, draw, container, systemd; see kervan --help\n");
   expect_refused({"--nonsense"}, "kervan: ");
-  expect_refused({"rnu", "lab"},
-                 "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd\n");
+  expect_refused(
+      {"rnu", "lab"},
+      "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd\n");
   expect_refused({"describe", "control/field"}, "there is no component type 'control/field'; there are: ");
 }
 
