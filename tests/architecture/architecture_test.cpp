@@ -50,10 +50,10 @@ const std::vector<Arrow> arrows = {
     {"components/grid/.*",
      {own_folder, "framework/geometry/", "framework/map_file/"},
      {"framework/geometry/messages.hpp"}},
-    // Messages that several components of an area read or write alike.
+    // Messages that several components of an area read or write alike, and the shell of those that make maps.
     {"components/observe/outline\\.hpp", {own_folder, messages}},
-    {"components/mapping/map_ports\\.hpp",
-     {"components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
+    {"components/mapping/map_(maker|ports)\\.hpp",
+     {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // One shell around seven behaviours, each a declaration in its own component.
