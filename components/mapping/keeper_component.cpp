@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "components/grid/checkpoint.hpp"
+#include "components/grid/messages.hpp"
 #include "components/grid/occupancy.hpp"
 #include "components/mapping/map_merger.hpp"
 #include "components/mapping/map_ports.hpp"
@@ -131,12 +132,7 @@ class KeeperComponent final : public Component {
   }
 
   void on_tile(std::size_t source, const MapTile& tile) {
-    const TileResult result = map_.add(source, {{tile.tile_x, tile.tile_y},
-                                                tile.session,
-                                                static_cast<double>(tile.resolution),
-                                                tile.width,
-                                                tile.height,
-                                                tile.data});
+    const TileResult result = map_.add(source, grid::view_of(tile));
     const std::string& name = params_.sources[source];
     switch (result) {
       case TileResult::merged:

@@ -9,8 +9,7 @@
 namespace kervan::mapping {
 namespace {
 
-constexpr int farthest_tile = 1 << 24;  // its cells are still numbered
-const char* const base_name = "";       // no mapper has it
+const char* const base_name = "";  // no mapper has it
 
 constexpr grid::LogOdds in_doubt = 1;  // the least there is: what was seen stays known when evidence cancels out
 
@@ -32,17 +31,14 @@ MapMerger::MapMerger(std::vector<std::string> sources, double resolution, std::s
     sources_.push_back({std::move(name), 0, 0, false, grid::Occupancy(resolution, -1, most_bytes)});
 }
 
-TileResult MapMerger::add(std::size_t source, const TileView& tile) {
-  constexpr auto side = static_cast<std::uint32_t>(grid::tile_side);
-  // As a float carries it, 0.05 is not 0.05.
-  if (!(std::abs(tile.resolution - resolution()) <= 1e-6 * resolution())) return TileResult::refused_resolution;
-  if (tile.columns != side || tile.rows != side || tile.percent.size() != std::size_t{side} * side)
-    return TileResult::refused_size;
-  if (std::any_of(tile.percent.begin(), tile.percent.end(), [](std::int8_t p) { return p < -1 || p > 100; }))
-    return TileResult::refused_value;
-  if (std::abs(std::int64_t{tile.tile.x}) > farthest_tile || std::abs(std::int64_t{tile.tile.y}) > farthest_tile)
-    return TileResult::refused_memory;
-
+TileResult MapMerger::add(std::size_t source, const grid::TileView& tile) {
+  switch (fault_of(tile, resolution())) {
+    case grid::TileFault::none: break;
+    case grid::TileFault::resolution: return TileResult::refused_resolution;
+    case grid::TileFault::size: return TileResult::refused_size;
+    case grid::TileFault::value: return TileResult::refused_value;
+    case grid::TileFault::place: return TileResult::refused_memory;
+  }
   Source& from = sources_[source];
   if (from.heard && tile.session != from.session && tile.session == from.before) return TileResult::from_the_past;
   const grid::CellBox box = grid::cells_of_tile(tile.tile);
@@ -55,9 +51,7 @@ TileResult MapMerger::add(std::size_t source, const TileView& tile) {
   }
   from.session = tile.session;
   from.heard = true;
-  for (int row = 0; row < box.rows; ++row)
-    std::copy_n(tile.percent.begin() + std::ptrdiff_t{row} * box.columns, box.columns,
-                from.layer.place({box.x, box.y + row}));
+  put(tile, from.layer);
   merge(box);
   merged_.touch(box);
   return TileResult::merged;

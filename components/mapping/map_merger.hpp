@@ -11,18 +11,9 @@
 #include "components/grid/grid.hpp"
 #include "components/grid/log_odds.hpp"
 #include "components/grid/occupancy.hpp"
+#include "components/grid/tile.hpp"
 
 namespace kervan::mapping {
-
-/// A square of a mapper's map as it travels.
-struct TileView {
-  grid::Cell tile;
-  std::uint64_t session = 0;  ///< which life of the mapper made it
-  double resolution = 0.0;    ///< m
-  std::uint32_t columns = 0;
-  std::uint32_t rows = 0;
-  std::span<const std::int8_t> percent;  ///< row by row from the lowest one; -1 unknown
-};
 
 enum class TileResult {
   merged,
@@ -42,7 +33,7 @@ class MapMerger {
   /// `sources`: the mappers' names. `most_bytes`: that the cells of each of its layers may take.
   MapMerger(std::vector<std::string> sources, double resolution, std::size_t most_bytes);
 
-  TileResult add(std::size_t source, const TileView& tile);
+  TileResult add(std::size_t source, const grid::TileView& tile);
 
   double resolution() const { return merged_.resolution(); }
   grid::CellBox box() const { return merged_.box(); }

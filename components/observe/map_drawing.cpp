@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 
+#include "components/grid/picture.hpp"
 #include "components/observe/decimal.hpp"
 #include "components/observe/svg_writer.hpp"
 #include "components/observe/world_layer.hpp"
@@ -28,6 +29,8 @@ constexpr const char* ink = "#1f2933";
 constexpr const char* soft_ink = "#6b7785";
 constexpr const char* wall_colour = "#2f3b47";
 constexpr const char* solid_colour = "#9aa5b1";
+constexpr const char* truth_colour = "#e0342b";    // of the world over a map of it
+constexpr const char* unknown_colour = "#dfe4e9";  // of what such a map knows nothing of
 constexpr const char* success_colour = "#2c8a4b";
 constexpr const char* failure_colour = "#c0392b";
 constexpr const char* fonts = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
@@ -49,8 +52,12 @@ struct Bounds {
   double height() const { return high.y() - low.y(); }
 };
 
-Bounds bounds_of(const MapDrawing& drawing) {
+Bounds bounds_of(const MapDrawing& drawing, const grid::Picture& map) {
   Bounds bounds;
+  if (!map.box.empty()) {
+    bounds.add(drawing.map->resolution() * Vector2(map.box.x, map.box.y));
+    bounds.add(drawing.map->resolution() * Vector2(map.box.x + map.box.columns, map.box.y + map.box.rows));
+  }
   for (const auto& [a, b] : drawing.world.walls) {
     bounds.add(a);
     bounds.add(b);
@@ -86,6 +93,13 @@ void draw_world(WorldLayer& layer, const DrawnWorld& world) {
   for (const auto& polygon : world.polygons) layer.polygon(polygon, solid_colour, wall_colour, 1.5);
   for (const auto& circle : world.circles) layer.circle(circle.center, circle.radius, solid_colour, wall_colour, 1.5);
   for (const auto& [a, b] : world.walls) layer.line({a, b}, wall_colour, 3.5);
+}
+
+/// Thin, so that the cells of a map on it are seen.
+void draw_truth_of_map(WorldLayer& layer, const DrawnWorld& world) {
+  for (const auto& polygon : world.polygons) layer.polygon(polygon, "none", truth_colour, 1.4);
+  for (const auto& circle : world.circles) layer.circle(circle.center, circle.radius, "none", truth_colour, 1.4);
+  for (const auto& [a, b] : world.walls) layer.line({a, b}, truth_colour, 1.4);
 }
 
 void draw_goal(WorldLayer& layer, const Vector2& at) {
@@ -202,21 +216,28 @@ double detail_reach(const DrawnRobot& robot) {
 
 bool has_detail(const DrawnRobot& robot) { return robot.goal && robot.goal->allFinite() && !robot.truth.empty(); }
 
-void draw_map(SvgWriter& svg, const MapDrawing& drawing, const Bounds& bounds, double px) {
+void draw_map(SvgWriter& svg, const MapDrawing& drawing, const grid::Picture& map, const Bounds& bounds, double px) {
   svg.element("rect", {{"x", metres(bounds.low.x())},
                        {"y", metres(-bounds.high.y())},
                        {"width", metres(bounds.width())},
                        {"height", metres(bounds.height())},
-                       {"fill", "#ffffff"},
+                       {"fill", drawing.map ? unknown_colour : "#ffffff"},
                        {"stroke", "#d5dbe1"},
                        {"stroke-width", metres(px)}});
   WorldLayer layer(svg, px);
+  if (!map.box.empty()) {
+    const double cell = drawing.map->resolution();
+    layer.image(cell * Vector2(map.box.x, map.box.y), cell * map.box.columns, cell * map.box.rows, map.png);
+  }
   draw_grid(layer, bounds);
   for (std::size_t i = 0; i < drawing.robots.size(); ++i) draw_route(layer, drawing.robots[i].route, colour_of(i));
   for (std::size_t i = 0; i < drawing.robots.size(); ++i)
     for (const auto& snapshot : drawing.robots[i].snapshots)
       for (const auto& area : snapshot.seen) layer.veil(area, colour_of(i));
-  draw_world(layer, drawing.world);
+  if (drawing.map)
+    draw_truth_of_map(layer, drawing.world);
+  else
+    draw_world(layer, drawing.world);
 
   for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
     if (!on_a_route(drawing, drawing.nodes[i])) draw_node(layer, drawing.nodes[i], i);
@@ -355,6 +376,12 @@ double draw_figures(SvgWriter& svg, const MapDrawing& drawing, double top) {
   return bottom;
 }
 
+/// A patch of a map, around a sample line.
+void draw_patch(WorldLayer& layer, const Polyline& line, const char* fill) {
+  const Vector2 up(0.0, 5.0);
+  layer.polygon({line[0] - up, line[1] - up, line[1] + up, line[0] + up}, fill, "#d5dbe1", 1.0);
+}
+
 /// What the lines and marks mean, in two columns from (margin, top) downwards, page pixels. Returns where it ends.
 double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
   WorldLayer layer(svg, 1.0);
@@ -387,6 +414,16 @@ double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
            l.veil(cone(at, 0.5, 26.0), c);
            draw_arrowhead(l, at, c);
          }});
+  if (drawing.map) {
+    entries.push_back(
+        {"the map: free", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#ffffff"); }});
+    entries.push_back(
+        {"the map: occupied", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#000000"); }});
+    entries.push_back({"the map: nothing known",
+                       [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, unknown_colour); }});
+    entries.push_back(
+        {"the world, truth", [](WorldLayer& l, const Polyline& p, const char*) { l.line(p, truth_colour, 1.4); }});
+  }
   double y = top;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double x = margin + (i % 2 == 0 ? 0.0 : 205.0);
@@ -401,7 +438,8 @@ double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
 }  // namespace
 
 std::string to_svg(const MapDrawing& drawing) {
-  const Bounds bounds = bounds_of(drawing);
+  const grid::Picture map = drawing.map ? picture_of(*drawing.map) : grid::Picture{};
+  const Bounds bounds = bounds_of(drawing, map);
   const double px = std::max(bounds.width() / map_width, bounds.height() / map_height);
   const double map_bottom = header + bounds.height() / px + gap;
 
@@ -434,7 +472,7 @@ std::string to_svg(const MapDrawing& drawing) {
                        {"width", metres(page_width * px)},
                        {"height", metres(page_height * px)},
                        {"fill", "#fafbfc"}});
-  draw_map(svg, drawing, bounds, px);
+  draw_map(svg, drawing, map, bounds, px);
   for (std::size_t i = 0; i < details.size(); ++i) {
     draw_detail_frame(svg, drawing.robots[details[i]], px);
     const double from_right = static_cast<double>(details.size() - i) * (detail_size + detail_gap) - detail_gap;

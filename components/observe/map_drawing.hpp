@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "components/grid/occupancy.hpp"
 #include "components/observe/polyline.hpp"
 #include "components/observe/snapshot.hpp"
 #include "framework/geometry/pose2.hpp"
@@ -53,6 +54,7 @@ struct MapDrawing {
   std::string result;    ///< "success", "failed", "aborted", or empty; shown in its colour beside the title
   std::string subtitle;  ///< one line under the title
   DrawnWorld world;
+  std::optional<grid::Occupancy> map;  ///< that was made, drawn below everything else; the world is then outlined only
   Polyline
       nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, those of up to three robots' routes are
   std::vector<DrawnRobot> robots;  ///< none: the picture of a world, without a legend
@@ -61,7 +63,7 @@ struct MapDrawing {
 /// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in
 /// SVG, a point (x, y) of the map is drawn at (x, -y). Beside the map stand the legend, the robots' figures and, for up
 /// to three robots, the surroundings of the goal enlarged. Points that are not finite are left out. Equal drawings give
-/// equal bytes.
+/// equal bytes. Throws std::invalid_argument if the map has too many cells for a picture.
 std::string to_svg(const MapDrawing& drawing);
 
 }  // namespace kervan::observe

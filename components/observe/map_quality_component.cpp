@@ -5,6 +5,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "components/grid/messages.hpp"
 #include "components/observe/map_quality.hpp"
 #include "components/observe/outline.hpp"
 #include "framework/geometry/messages.hpp"
@@ -53,21 +54,10 @@ class MapQualityComponent final : public Component {
 
   void on_activate(Time now) override { activated_ = now; }
 
-  void on_tile(const kervan_msgs::msg::MapTile& tile, Time) {
-    constexpr auto side = static_cast<std::uint32_t>(grid::tile_side);
-    constexpr int farthest = 1 << 24;
-    const double resolution = static_cast<double>(tile.resolution);
-    const bool fits = std::abs(resolution - params_.resolution) <= 1e-6 * params_.resolution && tile.width == side &&
-                      tile.height == side && tile.data.size() == std::size_t{side} * side &&
-                      std::abs(std::int64_t{tile.tile_x}) <= farthest &&
-                      std::abs(std::int64_t{tile.tile_y}) <= farthest;
-    const grid::CellBox box = fits ? grid::cells_of_tile({tile.tile_x, tile.tile_y}) : grid::CellBox{};
-    if (!fits || map_.cover(box) == grid::Growth::refused) {
+  void on_tile(const kervan_msgs::msg::MapTile& message, Time) {
+    const grid::TileView tile = grid::view_of(message);
+    if (fault_of(tile, params_.resolution) != grid::TileFault::none || put(tile, map_) == grid::Growth::refused)
       ++refused_;
-      return;
-    }
-    for (int row = 0; row < box.rows; ++row)
-      std::copy_n(tile.data.begin() + std::ptrdiff_t{row} * box.columns, box.columns, map_.place({box.x, box.y + row}));
   }
 
   void on_tick(Time now) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "components/grid/messages.hpp"
 #include "components/observe/arbitration_log.hpp"
 #include "components/observe/decimal.hpp"
 #include "components/observe/map_drawing.hpp"
@@ -19,6 +20,7 @@
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "kervan_msgs/msg/ArbitrationState.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/MapTile.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "kervan_msgs/msg/Outline.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
@@ -32,6 +34,8 @@ namespace {
 
 using namespace std::chrono_literals;
 using kervan_msgs::msg::MissionOutcome;
+
+constexpr std::size_t most_map_bytes = std::size_t{1} << 28;
 
 struct MapReportParams {
   std::vector<std::string> robots;
@@ -224,9 +228,12 @@ class MapReportComponent final : public Component {
   std::deque<Subject> robots_ = subjects();
   Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), "True shape of the world."};
   Input<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched.optional(), "How the mission ended."};
+  Input<kervan_msgs::msg::MapTile> tiles_{this, "tiles", qos::latched.optional(), "The map that is made, to be drawn."};
   std::optional<Input<tf2_msgs::msg::TFMessage>> tf_ = frames();
   Timer tick_{this, params_.period, &MapReportComponent::on_tick};
   std::ofstream table_;
+  std::optional<grid::Occupancy> map_;  // with the cells of the first tile
+  std::uint64_t refused_tiles_ = 0;
   Time started_{};
   Time looked_{};
 
@@ -263,12 +270,29 @@ class MapReportComponent final : public Component {
       for (const auto& message : tf_->take())
         for (const auto& frame : message->transforms)
           for (auto& robot : robots_) robot.take_frame(frame);
+    take_tiles();
     for (auto& robot : robots_) robot.look(started_, now, table_);
+  }
+
+  void take_tiles() {
+    constexpr double finest = 1e-3, coarsest = 1e3;  // m
+    for (const auto& message : tiles_.take()) {
+      if (message.disposed()) continue;
+      const grid::TileView tile = grid::view_of(*message);
+      if (!map_ && tile.resolution >= finest && tile.resolution <= coarsest)
+        map_.emplace(tile.resolution, std::int8_t{-1}, most_map_bytes);
+      if (!map_ || fault_of(tile, map_->resolution()) != grid::TileFault::none ||
+          put(tile, *map_) == grid::Growth::refused)
+        ++refused_tiles_;
+    }
+    if (refused_tiles_ > 0) report_degraded("tiles: those with cells or sizes of another kind are left out");
   }
 
   void on_shutdown(Time now) override {
     if (run_folder().empty()) return;
     if (now > looked_) on_tick(now);
+    take_tiles();
+    if (refused_tiles_ > 0) log().warn("left out {} tiles that do not fit", refused_tiles_);
     table_.close();
     MapDrawing drawing;
     drawing.title = params_.title;
@@ -284,8 +308,15 @@ class MapReportComponent final : public Component {
     for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));
     const auto has_goal = [](const DrawnRobot& robot) { return robot.goal.has_value(); };
     if (!result && std::none_of(drawing.robots.begin(), drawing.robots.end(), has_goal)) drawing.result.clear();
+    drawing.map = std::move(map_);
     std::ofstream map(run_folder() / "map.svg");
-    map << to_svg(drawing);
+    try {
+      map << to_svg(drawing);
+    } catch (const std::invalid_argument& error) {
+      log().error("the map is not drawn: {}", error.what());
+      drawing.map.reset();
+      map << to_svg(drawing);
+    }
     map.close();
     draw_timelines(seconds(now - started_));
     if (!table_ || !map) log().error("trajectory.csv or map.svg could not be written in {}", run_folder().string());

@@ -1,5 +1,7 @@
 #include "components/observe/world_layer.hpp"
 
+#include <cstdint>
+
 #include "components/observe/decimal.hpp"
 
 namespace kervan::observe {
@@ -13,6 +15,20 @@ std::string points_of(const Polyline& corners) {
   for (const auto& corner : corners)
     if (corner.allFinite()) points += metres(corner.x()) + ',' + metres(-corner.y()) + ' ';
   return points;
+}
+
+/// As RFC 4648 has it: six bits a letter.
+std::string base64(const std::string& bytes) {
+  static constexpr char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const auto byte = [&](std::size_t k) {
+      return i + k < bytes.size() ? std::uint32_t{static_cast<unsigned char>(bytes[i + k])} : 0u;
+    };
+    const std::uint32_t three = byte(0) << 16 | byte(1) << 8 | byte(2);
+    for (std::size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : letters[three >> (18 - 6 * k) & 63];
+  }
+  return text;
 }
 
 }  // namespace
@@ -71,6 +87,16 @@ void WorldLayer::veil(const Polyline& corners, const char* colour) {
                            {"stroke-opacity", "0.5"},
                            {"stroke-width", metres(0.6 * px_)},
                            {"stroke-linejoin", "round"}});
+}
+
+void WorldLayer::image(const Vector2& low, double width, double height, const std::string& png) {
+  svg_.element("image", {{"x", metres(low.x())},
+                         {"y", metres(-low.y() - height)},
+                         {"width", metres(width)},
+                         {"height", metres(height)},
+                         {"preserveAspectRatio", "none"},
+                         {"image-rendering", "pixelated"},
+                         {"href", "data:image/png;base64," + base64(png)}});
 }
 
 // Fonts smaller than one unit are drawn badly by some programs, so the text has a coordinate system of its own in

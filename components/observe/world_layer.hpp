@@ -34,6 +34,9 @@ class WorldLayer {
   /// An area that lets what is below it shine through, with a thin edge.
   void veil(const Polyline& corners, const char* colour);
 
+  /// A PNG whose lower left corner is at `low`; its pixels stay sharp.
+  void image(const geometry::Vector2& low, double width, double height, const std::string& png);
+
   void label(const geometry::Vector2& at, const std::string& content, double size, const char* colour,
              const char* anchor, const geometry::Vector2& offset, const char* weight = "", bool halo = false);
 

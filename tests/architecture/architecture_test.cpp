@@ -47,6 +47,7 @@ const std::vector<Arrow> arrows = {
     {"framework/.*", {"framework/", messages}, {"framework/config/"}},
 
     // What the areas share: cells, and the files that maps are kept in.
+    {"components/grid/messages.hpp", {own_folder, messages}},
     {"components/grid/.*",
      {own_folder, "framework/geometry/", "framework/map_file/"},
      {"framework/geometry/messages.hpp"}},
@@ -62,7 +63,7 @@ const std::vector<Arrow> arrows = {
     // time.hpp is two aliases of std::chrono; an algorithm that takes a time takes it as everybody else does.
     {"components/.*",
      {own_folder, "components/grid/", "framework/geometry/", "framework/component/time.hpp"},
-     {"framework/geometry/messages.hpp"}},
+     {"framework/geometry/messages.hpp", "components/grid/messages.hpp"}},
 
     {"sim/(simulator_component\\.cpp|component/.*)",
      {"sim/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},

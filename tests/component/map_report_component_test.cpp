@@ -16,7 +16,7 @@
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Path.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
-#include "tests/component/plane_fixtures.hpp"
+#include "tests/component/map_fixtures.hpp"
 #include "tf2_msgs/msg/TFMessage.hpp"
 
 namespace kervan::test {
@@ -191,6 +191,37 @@ TEST(MapReportComponent, ShowsNothingOfTheSensorsUnlessAskedTo) {
   const TemporaryFolder folder;
   run(folder.path, 1500ms);
   EXPECT_EQ(count(content_of(folder.path / "map.svg"), "fill-opacity=\"0.1\""), 0u);
+}
+
+TEST(MapReportComponent, DrawsTheMapThatIsMade) {
+  const TemporaryFolder folder;
+  {
+    Harness harness("observe/map_report", {{"robots", ValueList{"r1"}}}, folder.path);
+    harness.feed("r1/truth", odometry_at({}));
+    harness.feed("tiles", map_tile({0, 0}, {0, 0, 99}));
+    harness.feed("tiles", map_tile({-1, 0}, {50}));
+    harness.advance(1s);
+    EXPECT_EQ(harness.state(), ComponentState::active);
+  }
+  const std::string map = content_of(folder.path / "map.svg");
+  EXPECT_TRUE(has(map, "<image x=\"-3.2000\" y=\"-0.0500\" width=\"3.3500\" height=\"0.0500\"")) << map;
+}
+
+TEST(MapReportComponent, LeavesOutTilesThatDoNotFitAndSaysSo) {
+  const TemporaryFolder folder;
+  {
+    Harness harness("observe/map_report", {{"robots", ValueList{"r1"}}}, folder.path);
+    kervan_msgs::msg::MapTile odd = map_tile({1, 0}, {99});
+    odd.resolution = std::numeric_limits<float>::quiet_NaN();
+    harness.feed("tiles", odd);
+    harness.feed("tiles", map_tile({0, 0}, {0, 0, 99}));
+    odd.resolution = 0.1f;
+    harness.feed("tiles", odd);
+    harness.advance(1s);
+    EXPECT_EQ(harness.state(), ComponentState::degraded);
+    EXPECT_EQ(harness.reason(), "tiles: those with cells or sizes of another kind are left out");
+  }
+  EXPECT_TRUE(has(content_of(folder.path / "map.svg"), "<image x=\"0.0000\" y=\"-0.0500\" width=\"0.1500\""));
 }
 
 TEST(MapReportComponent, WritesNothingWithoutAFolder) {

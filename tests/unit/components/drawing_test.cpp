@@ -115,6 +115,31 @@ TEST(MapDrawing, WithoutRobotsIsAPictureOfTheWorldWithoutALegend) {
   EXPECT_FALSE(has(svg, "driven"));
 }
 
+TEST(MapDrawing, ShowsTheKnownPartOfAMapUnderTheOutlineOfTheTruth) {
+  MapDrawing drawing = small_run();
+  EXPECT_FALSE(has(to_svg(drawing), "<image"));
+  EXPECT_FALSE(has(to_svg(drawing), ">the map: occupied</text>"));
+  drawing.map.emplace(0.05, std::int8_t{-1}, std::size_t{1} << 20);
+  EXPECT_FALSE(has(to_svg(drawing), "<image")) << "nothing is known";
+  drawing.map->cover({0, 0, 64, 64});
+  *drawing.map->place({20, 10}) = 100;
+  *drawing.map->place({39, 19}) = 0;
+  const std::string svg = to_svg(drawing);
+  EXPECT_TRUE(has(svg, "<image x=\"1.0000\" y=\"-1.0000\" width=\"1.0000\" height=\"0.5000\"")) << svg;
+  EXPECT_TRUE(has(svg, "href=\"data:image/png;base64,iVBORw0KGgo")) << "as every PNG begins";
+  EXPECT_TRUE(has(svg, ">the map: occupied</text>"));
+  EXPECT_TRUE(has(svg, "r=\"0.3000\" fill=\"none\" stroke=\"#e0342b\"")) << "the world's circle";
+  EXPECT_LT(svg.find("<image"), svg.find("#e0342b"));
+}
+
+TEST(MapDrawing, GrowsWithItsMap) {
+  MapDrawing drawing = small_run();
+  drawing.map.emplace(0.5, std::int8_t{-1}, std::size_t{1} << 20);
+  drawing.map->cover({-64, -64, 64, 64});
+  *drawing.map->place({-40, -40}) = 0;
+  EXPECT_TRUE(has(to_svg(drawing), ">-20</text>")) << "a line of the scale";
+}
+
 TEST(Snapshot, AConeReachesFromTheTransducerToTheArcOfItsRange) {
   const double fov = 0.5;
   const Polyline area = cone({1.0, 2.0, std::numbers::pi / 2.0}, fov, 3.0);

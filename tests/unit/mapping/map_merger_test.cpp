@@ -18,7 +18,7 @@ Percent tile_of(Percent first) {
   return first;
 }
 
-TileView view(const Percent& percent, std::uint64_t session = 1, grid::Cell tile = {0, 0}) {
+grid::TileView view(const Percent& percent, std::uint64_t session = 1, grid::Cell tile = {0, 0}) {
   return {tile, session, 0.05, grid::tile_side, grid::tile_side, percent};
 }
 
@@ -74,7 +74,7 @@ TEST(MapMerger, KeepsWhatAMapperSaidInAnEarlierLife) {
 TEST(MapMerger, RefusesTilesThatDoNotFit) {
   MapMerger map = two();
   const Percent good = tile_of({70});
-  TileView tile = view(good);
+  grid::TileView tile = view(good);
   tile.resolution = 0.1;
   EXPECT_EQ(map.add(0, tile), TileResult::refused_resolution);
   tile.resolution = std::numeric_limits<double>::quiet_NaN();
