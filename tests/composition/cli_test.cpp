@@ -106,7 +106,7 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd");
   expect_refused("run lba",
                  "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, "
-                 "10_wall_follow, lab");
+                 "10_wall_follow, 11_map_room, 12_map_two_robots, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
   expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
   expect_refused("run lab --place left=wrold",
@@ -130,7 +130,7 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "check lab --explain /r1/sonra",
       "--explain /r1/sonra: lab has no such topic; did you mean '/r1/sonar'? it has: /clock, /outline, "
       "/r1/arbitration, /r1/clearance, /r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, /r1/odom, "
-      "/r1/route, /r1/sonar, /r1/truth, /r1/waypoint, /result, /tf");
+      "/r1/route, /r1/sonar, /r1/truth, /r1/waypoint, /result, /tf, /tiles");
 }
 
 TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {

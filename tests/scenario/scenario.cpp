@@ -37,7 +37,7 @@ RobotExpectation robot(const Node& node) {
 
 Scenario load_scenario(const fs::path& file) {
   const Node root = config::load(file.string());
-  root.only_keys({"kervan_scenario", "help", "composition", "place", "args", "seeds", "expect"});
+  root.only_keys({"kervan_scenario", "help", "composition", "place", "for", "args", "seeds", "expect"});
   const Node& version = root.required("kervan_scenario");
   if (version.as_integer() != 1) version.fail("this is version 1 of the format");
 
@@ -51,6 +51,7 @@ Scenario load_scenario(const fs::path& file) {
     place->as_choice({"all"});
     scenario.place_all = true;
   }
+  if (const Node* length = root.optional("for")) scenario.length = length->as_text();
   if (const Node* arguments = root.optional("args"))
     for (const Node& argument : arguments->map())
       scenario.arguments.push_back(argument.name + "=" + argument.as_text());

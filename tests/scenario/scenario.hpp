@@ -34,6 +34,7 @@ struct Scenario {
   std::string help;
   std::string composition;             ///< a shipped one, or an absolute path
   bool place_all = false;              ///< in one container, whatever the composition says
+  std::string length;                  ///< "170s", of a composition without a mission; else empty
   std::vector<std::string> arguments;  ///< "controller=potential_gecui"
   std::optional<std::int64_t> first_seed, last_seed;
   std::string result;

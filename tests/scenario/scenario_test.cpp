@@ -60,6 +60,7 @@ struct ScenarioRun {
 ScenarioRun run_scenario(const Scenario& scenario, std::optional<std::int64_t> seed, unsigned threads) {
   Command command{KERVAN_PROGRAM, {"run", scenario.composition, "--json", "--threads", std::to_string(threads)}};
   if (scenario.place_all) command.arguments.insert(command.arguments.end(), {"--place", "all"});
+  if (!scenario.length.empty()) command.arguments.insert(command.arguments.end(), {"--for", scenario.length});
   std::vector<std::string> arguments = scenario.arguments;
   if (seed) arguments.push_back("seed=" + std::to_string(*seed));
   for (const std::string& argument : arguments) command.arguments.insert(command.arguments.end(), {"--arg", argument});
