@@ -6,14 +6,17 @@
 
 namespace kervan::grid {
 
-Occupancy from_map_file(const map_file::GridMap& map, std::size_t most_bytes) {
+CellBox cells_of(const map_file::GridMap& map) {
   if (map.origin.yaw != 0.0)
     throw std::invalid_argument("the map is turned by " + std::to_string(map.origin.yaw) +
                                 " rad against its frame; allowed: 0");
   const geometry::Vector2 corner = map.origin.position() / map.resolution;
   if (!has_cell(corner)) throw std::invalid_argument("the map's corner is too far from the origin of its frame");
-  const CellBox box{static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), map.columns,
-                    map.rows};
+  return {static_cast<int>(std::lround(corner.x())), static_cast<int>(std::lround(corner.y())), map.columns, map.rows};
+}
+
+Occupancy from_map_file(const map_file::GridMap& map, std::size_t most_bytes) {
+  const CellBox box = cells_of(map);
   Occupancy grid(map.resolution, std::int8_t{-1}, most_bytes);
   if (grid.cover(box) == Growth::refused)
     throw std::invalid_argument("the map of " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +

@@ -47,8 +47,12 @@ map_file::GridMap to_map_file(const Grid<Value>& grid) {
   return map;
 }
 
+/// The cells of the grid that a map's become: the nearest ones. Throws std::invalid_argument if the map is turned
+/// against its frame or too far from its origin.
+CellBox cells_of(const map_file::GridMap& map);
+
 /// The map as a grid. Its cells are moved to the nearest cells of the grid, by at most half of one. Throws
-/// std::invalid_argument if the map is turned against its frame or needs more than `most_bytes`.
+/// std::invalid_argument if cells_of() does or the map needs more than `most_bytes`.
 Occupancy from_map_file(const map_file::GridMap& map, std::size_t most_bytes);
 
 }  // namespace kervan::grid

@@ -20,7 +20,7 @@ struct CostmapParams {
   double radius = 0.25;          ///< m; no place of the robot's centre is nearer to an obstacle than this
   double clearance = 0.30;       ///< m; beyond the radius, where being near an obstacle still costs something
   double clearance_cost = 3.0;   ///< 0 .. 14; what a metre costs more right at the radius; falls as a parabola
-  double occupied_above = 65.0;  ///< per cent; a cell above it is an obstacle
+  double occupied_above = 50.0;  ///< per cent; a cell above it is an obstacle
   bool unknown_is_free = true;   ///< else it is an obstacle
 };
 

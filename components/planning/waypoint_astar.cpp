@@ -19,16 +19,16 @@ struct Open {
   bool operator<(const Open& other) const { return f != other.f ? f > other.f : node > other.node; }
 };
 
-Route nothing(RouteStatus status, std::size_t expanded = 0) {
+Route nothing(Outcome outcome, std::size_t expanded = 0) {
   Route route;
-  route.status = status;
+  route.outcome = outcome;
   route.expanded = expanded;
   return route;
 }
 
 Route trace_back(const WaypointGraph& graph, const std::vector<std::size_t>& parents, std::size_t goal) {
   Route route;
-  route.status = RouteStatus::found;
+  route.outcome = Outcome::found;
   for (std::size_t node = goal; node != no_parent; node = parents[node]) route.nodes.push_back(node);
   std::reverse(route.nodes.begin(), route.nodes.end());
   for (std::size_t i = 1; i < route.nodes.size(); ++i)
@@ -39,8 +39,8 @@ Route trace_back(const WaypointGraph& graph, const std::vector<std::size_t>& par
 }  // namespace
 
 Route find_route(const WaypointGraph& graph, std::size_t start, std::size_t goal) {
-  if (start >= graph.size()) return nothing(RouteStatus::start_off_graph);
-  if (goal >= graph.size()) return nothing(RouteStatus::goal_off_graph);
+  if (start >= graph.size()) return nothing(Outcome::start_outside);
+  if (goal >= graph.size()) return nothing(Outcome::goal_outside);
 
   std::vector<double> g(graph.size(), std::numeric_limits<double>::infinity());
   std::vector<std::size_t> parents(graph.size(), no_parent);
@@ -68,16 +68,16 @@ Route find_route(const WaypointGraph& graph, std::size_t start, std::size_t goal
       open.push({through + graph.distance(edge.to, goal), through, edge.to});
     }
   }
-  return nothing(RouteStatus::no_path, expanded);
+  return nothing(Outcome::no_path, expanded);
 }
 
 Route find_route(const WaypointGraph& graph, const geometry::Vector2& start, const geometry::Vector2& goal,
                  double reach) {
   const auto first = graph.nearest(start, reach);
   const auto edge = first ? std::nullopt : graph.nearest_edge(start, reach);
-  if (!first && !edge) return nothing(RouteStatus::start_off_graph);
+  if (!first && !edge) return nothing(Outcome::start_outside);
   const auto last = graph.nearest(goal, reach);
-  if (!last) return nothing(RouteStatus::goal_off_graph);
+  if (!last) return nothing(Outcome::goal_outside);
   if (first) return find_route(graph, *first, *last);
   // Both ends lead to the goal or neither does.
   Route a = find_route(graph, edge->first, *last);

@@ -10,19 +10,14 @@
 #include <cstddef>
 #include <vector>
 
+#include "components/planning/planner.hpp"
 #include "components/planning/waypoint_graph.hpp"
 
 namespace kervan::planning {
 
-enum class RouteStatus {
-  found,
-  no_path,          ///< start and goal lie on the graph but are not connected
-  start_off_graph,  ///< no such node, or none near enough to the start
-  goal_off_graph,
-};
-
 struct Route {
-  RouteStatus status = RouteStatus::no_path;
+  /// found, no_path, or start_outside and goal_outside: there is no such node, or none near enough.
+  Outcome outcome = Outcome::no_path;
   std::vector<std::size_t> nodes;  ///< from start to goal, both included; empty unless found
   double cost = 0.0;               ///< m, sum of the edges' costs
   double length = 0.0;             ///< m, sum of the edges' lengths; equals cost on a graph without declared costs

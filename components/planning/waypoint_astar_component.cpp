@@ -4,19 +4,11 @@
 #include <stdexcept>
 #include <string>
 
-#include "components/planning/waypoint_astar.hpp"
-#include "framework/geometry/messages.hpp"
-#include "framework/kervan.hpp"
-#include "geometry_msgs/msg/PoseStamped.hpp"
-#include "nav_msgs/msg/Odometry.hpp"
-#include "nav_msgs/msg/Path.hpp"
+#include "components/planning/planner_shell.hpp"
+#include "components/planning/waypoint_planner.hpp"
 
 namespace kervan::planning {
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr Duration patience = 100ms;  ///< with an odometry that is missing
 
 struct WaypointAstarParams {
   std::vector<geometry::Vector2> nodes;
@@ -59,16 +51,6 @@ WaypointGraph graph_of(const WaypointAstarParams& params) {
   return graph;
 }
 
-const char* why_not(RouteStatus status) {
-  switch (status) {
-    case RouteStatus::found: return "";
-    case RouteStatus::no_path: return "no route: no edges lead from the start to the goal";
-    case RouteStatus::start_off_graph: return "no route: no waypoint is within reach of the robot";
-    case RouteStatus::goal_off_graph: return "no route: no waypoint is within reach of the goal";
-  }
-  return "";
-}
-
 /// "0-1-2-4-5"
 std::string numbers(const std::vector<std::size_t>& nodes) {
   std::string text;
@@ -76,67 +58,22 @@ std::string numbers(const std::vector<std::size_t>& nodes) {
   return text;
 }
 
-/// m, along the path
-double length(const nav_msgs::msg::Path& path) {
-  double sum = 0.0;
-  for (std::size_t i = 1; i < path.poses.size(); ++i)
-    sum += (geometry::position_of(path.poses[i].pose) - geometry::position_of(path.poses[i - 1].pose)).norm();
-  return sum;
-}
-
-/// Plans once for every goal, from where the robot is then. A goal without a route gives an empty route and `degraded`.
-class WaypointAstarComponent final : public Component {
+/// Plans over a graph of waypoints (waypoint_astar.hpp).
+class WaypointAstarComponent final : public PlannerShell {
   const WaypointAstarParams& params_ = parameters<WaypointAstarParams>();
-  WaypointGraph graph_ = graph_of(params_);
-  Input<geometry_msgs::msg::PoseStamped> goal_{this, "goal", qos::latched, &WaypointAstarComponent::on_goal,
-                                               "Where the robot is to go, in the map."};
-  Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor, &WaypointAstarComponent::on_odometry,
-                                       "Where the robot is."};
-  Output<nav_msgs::msg::Path> route_{this, "route", qos::latched, "Waypoints to the goal; empty: there is no route."};
-  Timer tick_{this, patience, &WaypointAstarComponent::on_tick};
-  geometry_msgs::msg::PoseStamped wanted_;
-  Time wanted_since_{};
-  bool pending_ = false;
+  WaypointPlanner planner_{graph_of(params_), params_.reach};
+  Plan plan_;
 
-  void on_goal(const geometry_msgs::msg::PoseStamped& goal, Time now) {
-    wanted_ = goal;
-    wanted_since_ = now;
-    pending_ = true;
-    if (const auto* odometry = odom_.latest()) plan(*odometry, now);
+  void on_parameters_changed() override { planner_.set_reach(params_.reach); }
+
+  const Plan& plan(const geometry::Vector2& start, const geometry::Vector2& goal) override {
+    planner_.plan({.start = start, .goal = goal}, plan_);
+    return plan_;
   }
 
-  /// A goal may come before the first odometry; only when that goes on is something wrong.
-  void on_tick(Time now) {
-    if (pending_ && now - wanted_since_ >= patience) report_degraded(odom_.missing());
-  }
-
-  void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
-    if (pending_) plan(odometry, now);
-  }
-
-  void plan(const nav_msgs::msg::Odometry& odometry, Time now) {
-    pending_ = false;
-    const geometry::Vector2 goal = geometry::position_of(wanted_.pose);
-    const Route route = find_route(graph_, geometry::position_of(odometry.pose.pose), goal, params_.reach);
-
-    nav_msgs::msg::Path path;
-    geometry::set_header(path.header, now, wanted_.header.frame_id);
-    const auto add = [&path](const geometry::Vector2& at) {
-      path.poses.emplace_back();
-      path.poses.back().header = path.header;
-      path.poses.back().pose = geometry::to_message(geometry::Pose2{at.x(), at.y(), 0.0});
-    };
-    for (const std::size_t node : route.nodes) add(graph_.position(node));
-    // The goal need not be a waypoint; the last metres to it are driven straight.
-    if (route.status == RouteStatus::found && (graph_.position(route.nodes.back()) - goal).norm() > 1e-3) add(goal);
-    route_.publish(path);
-
-    if (route.status == RouteStatus::found) {
-      log().info("route to ({:.2f}, {:.2f}) over {}: {:.2f} m", goal.x(), goal.y(), numbers(route.nodes), length(path));
-      report_active();
-    } else {
-      report_degraded(why_not(route.status));
-    }
+  void announce(const Plan& plan, const geometry::Vector2& goal) override {
+    log().info("route to ({:.2f}, {:.2f}) over {}: {:.2f} m", goal.x(), goal.y(), numbers(planner_.nodes()),
+               plan.length);
   }
 };
 

@@ -57,8 +57,8 @@ const std::vector<Arrow> arrows = {
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
-    // One shell around seven behaviours, each a declaration in its own component.
-    {"components/behavior/behaviour_shell\\.hpp",
+    // One shell around seven behaviours, each a declaration in its own component, and one around the planners.
+    {"components/(behavior/behaviour|planning/planner)_shell\\.hpp",
      {own_folder, "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // time.hpp is two aliases of std::chrono; an algorithm that takes a time takes it as everybody else does.
     {"components/.*",

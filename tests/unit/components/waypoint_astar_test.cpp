@@ -79,7 +79,7 @@ double cheapest_by_relaxation(const WaypointGraph& graph, std::size_t start, std
 
 TEST(WaypointAstar, PlansThePrintedPathOnTheDeclaredAdjacency) {
   const Route route = find_route(lab(), 0, 5);
-  EXPECT_EQ(route.status, RouteStatus::found);
+  EXPECT_EQ(route.outcome, Outcome::found);
   EXPECT_EQ(route.nodes, (Nodes{0, 1, 2, 4, 5}));
   EXPECT_NEAR(route.length, 18.941, 0.0005);
   EXPECT_DOUBLE_EQ(route.cost, route.length);
@@ -115,12 +115,12 @@ TEST(WaypointAstar, PutsPositionsOnTheNearestNode) {
 
 TEST(WaypointAstar, SaysWhichEndIsOffTheGraph) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(find_route(lab(), Vector2(-2, 0), Vector2(16, 7.8), 1.0).status, RouteStatus::start_off_graph);
-  EXPECT_EQ(find_route(lab(), Vector2(nan, 0), Vector2(16, 7.8), 1.0).status, RouteStatus::start_off_graph);
-  EXPECT_EQ(find_route(lab(), Vector2(0, 0), Vector2(20, 11), 1.0).status, RouteStatus::goal_off_graph);
-  EXPECT_EQ(find_route(lab(), 14, 5).status, RouteStatus::start_off_graph);
-  EXPECT_EQ(find_route(lab(), 0, 14).status, RouteStatus::goal_off_graph);
-  EXPECT_EQ(find_route(WaypointGraph({}), Vector2(0, 0), Vector2(1, 0), 1e9).status, RouteStatus::start_off_graph);
+  EXPECT_EQ(find_route(lab(), Vector2(-2, 0), Vector2(16, 7.8), 1.0).outcome, Outcome::start_outside);
+  EXPECT_EQ(find_route(lab(), Vector2(nan, 0), Vector2(16, 7.8), 1.0).outcome, Outcome::start_outside);
+  EXPECT_EQ(find_route(lab(), Vector2(0, 0), Vector2(20, 11), 1.0).outcome, Outcome::goal_outside);
+  EXPECT_EQ(find_route(lab(), 14, 5).outcome, Outcome::start_outside);
+  EXPECT_EQ(find_route(lab(), 0, 14).outcome, Outcome::goal_outside);
+  EXPECT_EQ(find_route(WaypointGraph({}), Vector2(0, 0), Vector2(1, 0), 1e9).outcome, Outcome::start_outside);
 }
 
 TEST(WaypointAstar, FindsNoPathBetweenSeparateParts) {
@@ -128,14 +128,14 @@ TEST(WaypointAstar, FindsNoPathBetweenSeparateParts) {
   graph.connect(0, 1);
   graph.connect(2, 3);
   const Route route = find_route(graph, 0, 3);
-  EXPECT_EQ(route.status, RouteStatus::no_path);
+  EXPECT_EQ(route.outcome, Outcome::no_path);
   EXPECT_TRUE(route.nodes.empty());
   EXPECT_EQ(route.expanded, 2u);
 }
 
 TEST(WaypointAstar, IsThereAlreadyWhenStartAndGoalAreOneNode) {
   const Route route = find_route(lab(), 7, 7);
-  EXPECT_EQ(route.status, RouteStatus::found);
+  EXPECT_EQ(route.outcome, Outcome::found);
   EXPECT_EQ(route.nodes, Nodes{7});
   EXPECT_EQ(route.length, 0.0);
 }
@@ -165,7 +165,7 @@ TEST(WaypointAstar, FindsTheCheapestRouteOnRandomGraphs) {
     }
     const Route route = find_route(graph, 0, 1);
     const double cheapest = cheapest_by_relaxation(graph, 0, 1);
-    if (route.status == RouteStatus::found)
+    if (route.outcome == Outcome::found)
       EXPECT_NEAR(route.cost, cheapest, 1e-9);
     else
       EXPECT_EQ(cheapest, std::numeric_limits<double>::infinity());
@@ -237,7 +237,7 @@ TEST(WaypointAstar, BeginsOnAnEdgeWithTheEndOverWhichTheGoalIsNearer) {
   const WaypointGraph graph = lab();
   EXPECT_EQ(find_route(graph, Vector2(8.0, 6.4), Vector2(16.0, 7.8), 1.0).nodes, (Nodes{4, 5}));
   EXPECT_EQ(find_route(graph, Vector2(8.0, 6.4), Vector2(0.0, 0.0), 1.0).nodes, (Nodes{2, 1, 0}));
-  EXPECT_EQ(find_route(graph, Vector2(8.0, 8.4), Vector2(16.0, 7.8), 1.0).status, RouteStatus::start_off_graph);
+  EXPECT_EQ(find_route(graph, Vector2(8.0, 8.4), Vector2(16.0, 7.8), 1.0).outcome, Outcome::start_outside);
 }
 
 TEST(WaypointGraph, FindsTheNearestEdgeWithTheLowerNumbers) {

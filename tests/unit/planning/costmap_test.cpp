@@ -17,7 +17,7 @@ double clearance_of(const grid::Occupancy& map, const grid::CellBox& box, int x,
   double nearest = 1e9;
   for (int oy = box.y; oy < box.y + box.rows; ++oy)
     for (int ox = box.x; ox < box.x + box.columns; ++ox) {
-      if (map.at({ox, oy}) <= 65) continue;
+      if (map.at({ox, oy}) <= 50) continue;
       const double dx = ox == x ? 0.0 : std::abs(ox - x) - 0.5, dy = oy == y ? 0.0 : std::abs(oy - y) - 0.5;
       nearest = std::min(nearest, std::hypot(dx, dy) * map.resolution());
     }
@@ -104,8 +104,8 @@ TEST(Costmap, TakesUnknownCellsForWhatItIsTold) {
 TEST(Costmap, CountsACellAsAnObstacleAboveTheLimitOnly) {
   grid::Occupancy map(0.1, -1, 1 << 20);
   map.cover({0, 0, 2, 1});
-  *map.place({0, 0}) = 65;
-  *map.place({1, 0}) = 66;
+  *map.place({0, 0}) = 50;
+  *map.place({1, 0}) = 51;
   Costmap costs({.radius = 0.0, .clearance = 0.0});
   costs.update(map, {0, 0, 2, 1});
   EXPECT_FALSE(costs.blocked(costs.index(1, 1)));

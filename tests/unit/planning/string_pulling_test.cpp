@@ -21,12 +21,12 @@ double length_of(const std::vector<Vector2>& points) {
   return length;
 }
 
-/// Cells, from a point to the nearest obstacle: the cells of the map that are above 65 per cent.
+/// Cells, from a point to the nearest obstacle: the cells of the map that are above 50 per cent.
 double to_obstacle(const grid::Occupancy& cells, const grid::CellBox& box, const Vector2& point) {
   double nearest = 1e9;
   for (int y = 0; y < box.rows; ++y)
     for (int x = 0; x < box.columns; ++x)
-      if (cells.at({x, y}) > 65) {
+      if (cells.at({x, y}) > 50) {
         const double dx = std::max({x + 1.0 - point.x(), point.x() - (x + 2.0), 0.0}),
                      dy = std::max({y + 1.0 - point.y(), point.y() - (y + 2.0), 0.0});
         nearest = std::min(nearest, std::hypot(dx, dy));
