@@ -1,5 +1,6 @@
 #include "sim/bodies.hpp"
 
+#include <numeric>
 #include <utility>
 
 namespace kervan::sim {
@@ -7,6 +8,7 @@ namespace kervan::sim {
 namespace {
 constexpr std::size_t worth_sorting = 16;  // fewer are looked through one by one
 constexpr std::size_t cells_a_body = 4;
+constexpr double far = 0.1;  // m, of cells of 1 m
 }  // namespace
 
 void Bodies::add(std::string name, const Outline& outline, const Pose2& pose) {
@@ -15,18 +17,22 @@ void Bodies::add(std::string name, const Outline& outline, const Pose2& pose) {
   radii_.push_back(outline.circumradius());
   largest_radius_ = std::max(largest_radius_, outline.circumradius());
   corners_.resize(corners_.size() + outline.corners().size());
+  next_corners_.resize(corners_.size());
   first_corner_.push_back(corners_.size());
   poses_.push_back(pose);
+  next_poses_.push_back(pose);
   move(size() - 1, pose);
   // Looked through one by one, too many new ones would make adding them slow.
-  if (size() - sorted_ > 4 * worth_sorting) sort();
+  if (size() - sorted_ > 4 * worth_sorting) sort_anew();
 }
 
 void Bodies::remove(std::size_t body) {
   const auto erase_from = [body](auto& list) { list.erase(list.begin() + static_cast<std::ptrdiff_t>(body)); };
-  const std::size_t first = first_corner_[body], count = first_corner_[body + 1] - first;
+  const std::size_t first = first_corner_[body], count = corner_count(body);
   corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(first),
                  corners_.begin() + static_cast<std::ptrdiff_t>(first + count));
+  next_corners_.resize(corners_.size());
+  next_poses_.pop_back();
   erase_from(first_corner_);
   for (std::size_t i = body; i < first_corner_.size(); ++i) first_corner_[i] -= count;
   erase_from(names_);
@@ -34,17 +40,26 @@ void Bodies::remove(std::size_t body) {
   erase_from(radii_);
   erase_from(poses_);
   largest_radius_ = radii_.empty() ? 0.0 : *std::max_element(radii_.begin(), radii_.end());
-  sort();
+  sort_anew();
 }
 
 void Bodies::move(std::size_t body, const Pose2& pose) {
-  poses_[body] = pose;
-  const std::span<const Vector2> corners = outlines_[body].corners();
+  prepare(body, pose);
+  go(body);
+}
+
+void Bodies::prepare(std::size_t body, const Pose2& pose) {
+  next_poses_[body] = pose;
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  Vector2* placed = &corners_[first_corner_[body]];
-  for (const Vector2& corner : corners)
+  Vector2* placed = &next_corners_[first_corner_[body]];
+  for (const Vector2& corner : outlines_[body].corners())
     *placed++ = {pose.x + c * corner.x() - s * corner.y(), pose.y + s * corner.x() + c * corner.y()};
-  if (body < sorted_) moved_ = std::max(moved_, (pose.position() - sorted_at_[body]).lpNorm<Eigen::Infinity>());
+}
+
+void Bodies::go(std::size_t body) {
+  poses_[body] = next_poses_[body];
+  std::copy_n(&next_corners_[first_corner_[body]], corner_count(body), &corners_[first_corner_[body]]);
+  if (body < sorted_) moved_ = std::max(moved_, (center(body) - sorted_at_[body]).lpNorm<Eigen::Infinity>());
 }
 
 std::uint32_t Bodies::cell(double coordinate) const {
@@ -54,14 +69,21 @@ std::uint32_t Bodies::cell(double coordinate) const {
 }
 
 void Bodies::sort() {
+  if (moved_ > far || sorted_ < size()) sort_anew();
+}
+
+void Bodies::sort_anew() {
   sorted_ = 0;
   moved_ = 0.0;
-  if (size() < worth_sorting) return;
+  ids_.resize(size());
+  if (size() < worth_sorting) {
+    std::iota(ids_.begin(), ids_.end(), 0u);
+    return;
+  }
   for (side_ = 8; std::size_t{side_} * side_ < cells_a_body * size();) side_ *= 2;
   begin_.assign(std::size_t{side_} * side_ + 1, 0);
   cell_of_.resize(size());
   sorted_at_.resize(size());
-  ids_.resize(size());
   for (std::size_t body = 0; body < size(); ++body) {
     sorted_at_[body] = center(body);
     cell_of_[body] = cell(sorted_at_[body].y()) * side_ + cell(sorted_at_[body].x());

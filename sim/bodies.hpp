@@ -23,6 +23,11 @@ class Bodies {
 
   void move(std::size_t body, const Pose2& pose);
 
+  /// The same in two parts: several threads may prepare the moves of different bodies while others search; a body is
+  /// where it was until it goes.
+  void prepare(std::size_t body, const Pose2& pose);
+  void go(std::size_t body);
+
   std::size_t size() const { return poses_.size(); }
   const std::string& name(std::size_t body) const { return names_[body]; }
   const Outline& outline(std::size_t body) const { return outlines_[body]; }
@@ -34,12 +39,16 @@ class Bodies {
   double largest_radius() const { return largest_radius_; }
 
   std::span<const Vector2> corners(std::size_t body) const {
-    return {corners_.data() + first_corner_[body], first_corner_[body + 1] - first_corner_[body]};
+    return {corners_.data() + first_corner_[body], corner_count(body)};
   }
 
-  /// Sorts all bodies into cells. A search finds the same before and after, but has more to look through the farther
-  /// the bodies have moved since the last time.
+  /// Sorts all bodies into cells if they have moved too far since the last time: a search finds the same before and
+  /// after, but has more to look through then.
   void sort();
+
+  /// All bodies, once they have been sorted, so that neighbours are near each other: going through them in this order
+  /// meets the same part of the world again while it is still in the caches.
+  std::span<const std::uint32_t> by_place() const { return ids_; }
 
   /// Calls visit(body) for all bodies whose centres lie in the box, for others too, and perhaps twice; the order says
   /// nothing. Returns true if those were all there are.
@@ -52,6 +61,7 @@ class Bodies {
     std::uint32_t first, count;
   };
   Cells cells(double low, double high) const;
+  void sort_anew();
   std::uint32_t cell(double coordinate) const;
 
   template <class Visit>
@@ -59,9 +69,13 @@ class Bodies {
     for (std::uint32_t i = begin_[first]; i < begin_[last]; ++i) visit(std::size_t{ids_[i]});
   }
 
+  std::size_t corner_count(std::size_t body) const { return first_corner_[body + 1] - first_corner_[body]; }
+
   std::vector<Pose2> poses_;
   std::vector<double> radii_;
   std::vector<Vector2> corners_;  // in map
+  std::vector<Pose2> next_poses_;
+  std::vector<Vector2> next_corners_;
   std::vector<std::size_t> first_corner_{0};
   std::vector<Outline> outlines_;
   std::vector<std::string> names_;

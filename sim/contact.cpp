@@ -60,6 +60,10 @@ Moved Body::move(const Motion& wanted, const Surroundings& around) {
   const double total = length(wanted);
   if (total == 0.0) return {};
 
+  // What is left of the last look may be less than what a quick one gives.
+  if (!(room_ - total > heeds()))
+    room_ = std::max(room_, around.world().free_around(pose_.position()) - outline_.circumradius());
+
   // Far from everything nothing needs to be looked at: neither can the body touch, nor come nearer than it ever was.
   const double room = this->room(around, heeds() + total + doubt);
   if (!touching_ && room - total > min_clearance_) {

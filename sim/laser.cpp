@@ -19,18 +19,18 @@ Laser::Laser(const LaserMount& mount, const LaserSettings& settings) : mount_(mo
 void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t scan,
                     std::span<double> ranges) const {
   assert(ranges.size() == size());
-  constexpr std::size_t most = 256;  // beams at a time, on the stack
-  std::array<Vector2, most> turned;
-  std::array<RayHit, most> hits;
+  std::array<Vector2, most_rays> turned;
+  static thread_local std::array<RayHit, most_rays> hits;  // clearing them each time would cost
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
   const Vector2 origin = pose * mount_.pose.position();
-  for (std::size_t first = 0; first < size(); first += most) {
-    const std::size_t count = std::min(most, size() - first);
+  for (std::size_t first = 0; first < size(); first += most_rays) {
+    const std::size_t count = std::min(most_rays, size() - first);
     for (std::size_t i = 0; i < count; ++i) {
       const Vector2& d = directions_[first + i];
       turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
     }
-    around.cast(origin, {turned.data(), count}, mount_.max_range, {hits.data(), count});
+    const RayFan fan{origin, {turned.data(), count}};
+    around.cast({&fan, 1}, mount_.max_range, {hits.data(), count});
     for (std::size_t i = 0; i < count; ++i) {
       double range = hits[i].distance;
       if (range < infinity) {

@@ -29,7 +29,7 @@ Outline::Outline(std::vector<Vector2> corners) : corners_(std::move(corners)) {
 
 bool Outline::contains(const Vector2& point) const {
   for (std::size_t i = 0; i < corners_.size(); ++i)
-    if (outward_[i].dot(point - corners_[i]) > 0.0) return false;
+    if (height(i, point) > 0.0) return false;
   return true;
 }
 
@@ -38,14 +38,14 @@ Clearance Outline::clearance(const Segment& segment) const {
   const Vector2 along = segment.b - segment.a;
   double from = 0.0, to = 1.0;
   for (std::size_t i = 0; i < corners_.size() && from <= to; ++i) {
-    const double height = outward_[i].dot(segment.a - corners_[i]);
+    const double start = height(i, segment.a);
     const double slope = outward_[i].dot(along);
     if (slope == 0.0) {
-      if (height > 0.0) to = -1.0;
+      if (start > 0.0) to = -1.0;
     } else if (slope < 0.0) {
-      from = std::max(from, -height / slope);
+      from = std::max(from, -start / slope);
     } else {
-      to = std::min(to, -height / slope);
+      to = std::min(to, -start / slope);
     }
   }
   if (from <= to) {
@@ -53,7 +53,8 @@ Clearance Outline::clearance(const Segment& segment) const {
     return {0.0, inside, inside};
   }
 
-  // Apart from each other, a corner of one of the two is always among the nearest pair.
+  // Apart from each other, a corner of one of the two is always among the nearest pair; and what lies behind an edge is
+  // not nearest to it.
   double nearest_squared = infinity;
   Clearance nearest;
   const auto consider = [&](const Vector2& on_obstacle, const Vector2& on_outline) {
@@ -64,10 +65,15 @@ Clearance Outline::clearance(const Segment& segment) const {
       nearest.on_outline = on_outline;
     }
   };
+  constexpr double behind = -1e-9;  // m; more than rounding
+  const std::size_t last = corners_.size() - 1;
+  bool after = std::max(height(last, segment.a), height(last, segment.b)) > behind;
   for (std::size_t i = 0; i < corners_.size(); ++i) {
-    consider(nearest_point(segment, corners_[i]), corners_[i]);
-    consider(segment.a, nearest_point(edge(i), segment.a));
-    consider(segment.b, nearest_point(edge(i), segment.b));
+    const double a = height(i, segment.a), b = height(i, segment.b);
+    const bool before = std::exchange(after, std::max(a, b) > behind);
+    if (before || after) consider(nearest_point(segment, corners_[i]), corners_[i]);
+    if (a > behind) consider(segment.a, nearest_point(edge(i), segment.a));
+    if (b > behind) consider(segment.b, nearest_point(edge(i), segment.b));
   }
   nearest.distance = std::sqrt(nearest_squared);
   return nearest;

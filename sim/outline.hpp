@@ -38,8 +38,7 @@ class Outline {
   double separation(const Segment& segment) const {
     double most = -infinity;
     for (std::size_t i = 0; i < corners_.size(); ++i)
-      most =
-          std::max(most, std::min(outward_[i].dot(segment.a - corners_[i]), outward_[i].dot(segment.b - corners_[i])));
+      most = std::max(most, std::min(height(i, segment.a), height(i, segment.b)));
     return most;
   }
 
@@ -48,6 +47,8 @@ class Outline {
   Clearance clearance(const Circle& circle) const;
 
  private:
+  /// m; how far the point lies beyond edge i.
+  double height(std::size_t i, const Vector2& point) const { return outward_[i].dot(point - corners_[i]); }
   Segment edge(std::size_t i) const { return {corners_[i], corners_[i + 1 == corners_.size() ? 0 : i + 1]}; }
 
   std::vector<Vector2> corners_;

@@ -8,22 +8,22 @@ namespace kervan::sim {
 
 namespace kernel {
 
-void cast_scalar(const RayFan& fan) {
+void cast_scalar(const RayBatch& rays) {
   constexpr float tiny = 1e-9f;  // in place of 0, which has no inverse
-  const std::int32_t stride = fan.columns + 1, plane = stride * (fan.rows + 1);
-  for (std::int32_t i = 0; i < fan.count; ++i) {
-    float c = fan.xx * fan.dx[i] + fan.xy * fan.dy[i];
-    float s = fan.yx * fan.dx[i] + fan.yy * fan.dy[i];
+  const std::int32_t stride = rays.columns + 1, plane = stride * (rays.rows + 1);
+  for (std::int32_t i = 0; i < rays.count; ++i) {
+    float c = rays.xx * rays.dx[i] + rays.xy * rays.dy[i];
+    float s = rays.yx * rays.dx[i] + rays.yy * rays.dy[i];
     const bool left = c < 0.0f, down = s < 0.0f;
     c = std::max(std::abs(c), tiny);
     s = std::max(std::abs(s), tiny);
     const float per_c = 1.0f / c, per_s = 1.0f / s;
     // Mirrored, and counted from the first cell, so that precision depends on the distance alone.
-    const float ox = left ? 1.0f - fan.x : fan.x;
-    const float oy = down ? 1.0f - fan.y : fan.y;
-    const std::int32_t column = left ? fan.columns - 1 - fan.column : fan.column;
-    const std::int32_t row = down ? fan.rows - 1 - fan.row : fan.row;
-    const std::uint8_t* const skips = fan.skips + (left ? plane : 0) + (down ? 2 * plane : 0) + row * stride + column;
+    const float ox = left ? 1.0f - rays.x[i] : rays.x[i];
+    const float oy = down ? 1.0f - rays.y[i] : rays.y[i];
+    const std::int32_t column = left ? rays.columns - 1 - rays.column[i] : rays.column[i];
+    const std::int32_t row = down ? rays.rows - 1 - rays.row[i] : rays.row[i];
+    const std::uint8_t* const skips = rays.skips + (left ? plane : 0) + (down ? 2 * plane : 0) + row * stride + column;
 
     std::int32_t x = 0, y = 0;
     float t = 0.0f;
@@ -44,11 +44,25 @@ void cast_scalar(const RayFan& fan) {
         x = std::max(x, std::min(static_cast<std::int32_t>(ox + t * c), end_x - 1));
         face = across_y;
       }
-      if (t > fan.range) break;
+      if (t > rays.range) break;
     }
-    const bool hit = !(t > fan.range) && x < fan.columns - column && y < fan.rows - row;
-    fan.distance[i] = hit ? t : std::numeric_limits<float>::infinity();
-    fan.face[i] = face;
+    const bool hit = !(t > rays.range) && x < rays.columns - column && y < rays.rows - row;
+    rays.distance[i] = hit ? t : std::numeric_limits<float>::infinity();
+    rays.face[i] = face;
+  }
+}
+
+void find_near_scalar(const RayPaths& rays, float x, float y, float radius, std::uint16_t* near) {
+  for (std::int32_t first = 0; first < rays.count; first += 16) {
+    unsigned found = 0;
+    for (std::int32_t k = 0; k < 16; ++k) {
+      const std::int32_t i = first + k;
+      const float to_x = x - rays.x[i], to_y = y - rays.y[i];
+      const float along = to_x * rays.dx[i] + to_y * rays.dy[i], across = to_x * rays.dy[i] - to_y * rays.dx[i];
+      const bool is_near = std::abs(across) <= radius && along >= -radius && along - radius <= rays.length[i];
+      found |= static_cast<unsigned>(is_near) << k;
+    }
+    *near++ = static_cast<std::uint16_t>(found);
   }
 }
 
@@ -69,13 +83,23 @@ Instructions widest() {
   return found;
 }
 
-void cast(const RayFan& fan, Instructions instructions) {
+void cast(const RayBatch& rays, Instructions instructions) {
   switch (instructions) {
 #ifdef KERVAN_WIDE_KERNELS
-    case Instructions::avx512: return kernel::cast_avx512(fan);
-    case Instructions::avx2: return kernel::cast_avx2(fan);
+    case Instructions::avx512: return kernel::cast_avx512(rays);
+    case Instructions::avx2: return kernel::cast_avx2(rays);
 #endif
-    default: return kernel::cast_scalar(fan);
+    default: return kernel::cast_scalar(rays);
+  }
+}
+
+void find_near(const RayPaths& rays, float x, float y, float radius, std::uint16_t* near, Instructions instructions) {
+  switch (instructions) {
+#ifdef KERVAN_WIDE_KERNELS
+    case Instructions::avx512: return kernel::find_near_avx512(rays, x, y, radius, near);
+    case Instructions::avx2: return kernel::find_near_avx2(rays, x, y, radius, near);
+#endif
+    default: return kernel::find_near_scalar(rays, x, y, radius, near);
   }
 }
 

@@ -51,6 +51,8 @@ class ShapeMap {
   /// Every number is finite, every radius positive.
   ShapeMap(std::vector<Segment> segments, std::vector<Circle> circles);
 
+  bool empty() const { return segments_.empty() && circles_.empty(); }
+
   /// The first shape along the ray; a hit that is nearer than `range`, or at it, comes into `best` if it is nearer.
   void cast(const Ray& ray, double range, RayHit& best) const;
 

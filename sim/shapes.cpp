@@ -5,10 +5,6 @@
 
 namespace kervan::sim {
 
-namespace {
-constexpr double seam = 1e-9;  // metres by which segments are lengthened
-}
-
 Vector2 nearest_point(const Segment& segment, const Vector2& point) {
   const Vector2 along = segment.b - segment.a;
   const double length_squared = along.squaredNorm();
@@ -33,26 +29,6 @@ bool contains(const Box& box, const Vector2& point) {
   const Vector2 offset = point - box.pose.position();
   const Vector2 axis = geometry::heading(box.pose.yaw);
   return std::abs(offset.dot(axis)) <= 0.5 * box.size.x() && std::abs(cross(axis, offset)) <= 0.5 * box.size.y();
-}
-
-double hit_distance(const Ray& ray, const Segment& segment) {
-  const Vector2 along = segment.b - segment.a;
-  const Vector2 to_a = segment.a - ray.origin;
-  const double across = cross(ray.direction, along);
-  const double offset = cross(to_a, ray.direction);
-  if (across == 0.0) {  // parallel: the ray meets at most an end of the segment, or starts on it
-    if (std::abs(offset) > seam) return infinity;
-    const double t_a = to_a.dot(ray.direction);
-    const double t_b = (segment.b - ray.origin).dot(ray.direction);
-    const double farther = std::max(t_a, t_b);
-    return farther < 0.0 ? infinity : std::max(0.0, std::min(t_a, t_b));
-  }
-  // |across| is the segment's length seen across the ray, so the seam is compared in the same measure.
-  const double u = across > 0.0 ? offset : -offset;
-  const double width = std::abs(across);
-  if (u < -seam || u > width + seam) return infinity;
-  const double distance = cross(to_a, along) / across;
-  return distance >= 0.0 ? distance : infinity;
 }
 
 double hit_distance(const Ray& ray, const Circle& circle) {

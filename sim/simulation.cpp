@@ -80,7 +80,12 @@ void Simulation::step(Duration dt) {
   move_obstacles(dt);
   drive(dt);
   bodies_.sort();
-  workers_->for_each(robots_.size(), [this, dt](std::size_t i) { robots_[i].measure(around(i), now_, now_ + dt); });
+  const std::span<const std::uint32_t> bodies = bodies_.by_place();
+  workers_->for_each(bodies.size(), [this, bodies, dt](std::size_t i) {
+    if (bodies[i] < moving_.size()) return;
+    const std::size_t robot = bodies[i] - moving_.size();
+    robots_[robot].measure(around(robot), now_, now_ + dt);
+  });
   now_ += dt;
 }
 
@@ -109,12 +114,18 @@ void Simulation::drive(Duration dt) {
     Robot& robot = robots_[i];
     const Body& body = robot.body();
     const double near = body.heeds() + body.length(robot.planned()) + longest_way + doubt;
-    has_driven_[i] = around(i).room_among_bodies(body.outline(), body.hull(), near) >= near;
-    if (has_driven_[i]) robot.drive(*world_);
+    has_driven_[i] = around(i).exact_room_among_bodies(body.outline(), body.hull(), near).all.distance >= near;
+    if (!has_driven_[i]) return;
+    robot.drive(*world_);
+    bodies_.prepare(body_of(i), body.hull());
   });
   for (const std::size_t i : order_) {
-    if (!has_driven_[i]) drive_among_others(i);
-    bodies_.move(body_of(i), robots_[i].body().hull());
+    if (has_driven_[i]) {
+      bodies_.go(body_of(i));
+    } else {
+      drive_among_others(i);
+      bodies_.move(body_of(i), robots_[i].body().hull());
+    }
   }
 }
 

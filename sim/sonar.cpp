@@ -33,6 +33,7 @@ Sonars::Sonars(const SonarRing& ring, const SonarSettings& settings)
     for (int i = 0; i < settings.rays; ++i)
       directions_.push_back(geometry::heading(pose.yaw - 0.5 * ring.field_of_view + (i + 0.5) * share));
   }
+  echoes_.resize(ring.poses.size());
   if (ring_.arrays.empty() && !ring_.poses.empty()) {
     ring_.arrays.emplace_back(ring_.poses.size());
     std::iota(ring_.arrays[0].begin(), ring_.arrays[0].end(), std::uint16_t{0});
@@ -47,14 +48,15 @@ std::uint16_t Sonars::firing(std::size_t k, std::uint64_t round) const {
 }
 
 void Sonars::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t number,
-                     std::span<double> ranges) const {
+                     std::span<double> ranges) {
   assert(ranges.size() == size());
   if (settings_.firing == SonarFiring::sequential)
     std::fill(ranges.begin(), ranges.end(), std::numeric_limits<double>::quiet_NaN());
-  const Round round{around, pose, std::cos(pose.yaw), std::sin(pose.yaw), random, number};
+  const Round round{around, pose, random, number};
+  listen(round);
   for (std::size_t k = 0; k < firing(); ++k) {
     const std::uint16_t i = firing(k, number);
-    double range = echo(round, i).distance;
+    double range = echoes_[i].distance;
     if (settings_.crosstalk > 0.0) range = disturbed(round, i, range);
     if (range < infinity) {
       // Both numbers have their places always, so that one imperfection does not change what the other does.
@@ -67,39 +69,57 @@ void Sonars::measure(const Surroundings& around, const Pose2& pose, const Random
   }
 }
 
-Sonars::Echo Sonars::echo(const Round& round, std::size_t i) const {
-  return settings_.rays == 1 ? echo_of<1>(round, i) : echo_of<64>(round, i);
+void Sonars::listen(const Round& round) {
+  // Of each thread one, because clearing them would take longer than a ring of a few rays.
+  static thread_local std::array<Vector2, most_rays> turned;
+  static thread_local std::array<RayHit, most_rays> hits;
+  static thread_local std::array<RayFan, most_rays> fans;
+  std::array<std::uint16_t, most_rays> sonars;  // of the fans
+  std::size_t rays = 0, count = 0;
+  const auto cast = [&] {
+    round.around.cast({fans.data(), count}, ring_.max_range, {hits.data(), rays});
+    const RayHit* hit = hits.data();
+    for (std::size_t k = 0; k < count; hit += fans[k++].directions.size())
+      take_echo(round, sonars[k], fans[k], hit, echoes_[sonars[k]]);
+    rays = count = 0;
+  };
+  const Pose2& body = round.pose;
+  const double c = std::cos(body.yaw), s = std::sin(body.yaw);
+  const auto all = static_cast<std::size_t>(settings_.rays);
+  for (std::size_t k = 0; k < firing(); ++k) {
+    const std::uint16_t i = firing(k, round.number);
+    const Pose2& mount = ring_.poses[i];
+    const Vector2 origin(body.x + c * mount.x - s * mount.y, body.y + s * mount.x + c * mount.y);
+    echoes_[i] = {};
+    for (std::size_t first = 0; first < all;) {
+      if (rays == most_rays) cast();
+      const std::size_t now = std::min(most_rays - rays, all - first);
+      for (std::size_t ray = 0; ray < now; ++ray) {
+        const Vector2& d = directions_[i * all + first + ray];
+        turned[rays + ray] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
+      }
+      fans[count] = {origin, {&turned[rays], now}};
+      sonars[count++] = i;
+      rays += now;
+      first += now;
+    }
+  }
+  if (rays > 0) cast();
 }
 
-template <std::size_t most>
-Sonars::Echo Sonars::echo_of(const Round& round, std::size_t i) const {
-  std::array<Vector2, most> turned;
-  std::array<RayHit, most> hits;
+void Sonars::take_echo(const Round& round, std::uint16_t i, const RayFan& rays, const RayHit* hits,
+                       Echo& nearest) const {
   double min_cosine = min_cosine_;
   if (settings_.incidence_drop_off > 0.0) {
-    auto sequence = round.random.at(RandomUse::sonar_incidence, static_cast<std::uint16_t>(i), round.number);
+    auto sequence = round.random.at(RandomUse::sonar_incidence, i, round.number);
     min_cosine = std::cos(*settings_.incidence_limit - settings_.incidence_drop_off * sequence.uniform());
   }
-  const auto rays = static_cast<std::size_t>(settings_.rays);
-  const std::span<const Vector2> directions{&directions_[i * rays], rays};
-  const Pose2 &body = round.pose, &mount = ring_.poses[i];
-  const Vector2 origin(body.x + round.c * mount.x - round.s * mount.y, body.y + round.s * mount.x + round.c * mount.y);
-  Echo nearest;
-  for (std::size_t first = 0; first < rays; first += most) {
-    const std::size_t count = std::min(most, rays - first);
-    for (std::size_t k = 0; k < count; ++k) {
-      const Vector2& d = directions[first + k];
-      turned[k] = {round.c * d.x() - round.s * d.y(), round.s * d.x() + round.c * d.y()};
-    }
-    round.around.cast(origin, {turned.data(), count}, ring_.max_range, {hits.data(), count});
-    for (std::size_t k = 0; k < count; ++k) {
-      const RayHit& hit = hits[k];
-      if (hit.distance >= nearest.distance) continue;
-      if (-turned[k].dot(hit.normal) < min_cosine) continue;
-      nearest = {hit.distance, origin + hit.distance * turned[k]};
-    }
+  for (const Vector2& direction : rays.directions) {
+    const RayHit& hit = *hits++;
+    if (hit.distance >= nearest.distance) continue;
+    if (-direction.dot(hit.normal) < min_cosine) continue;
+    nearest = {hit.distance, rays.origin + hit.distance * direction};
   }
-  return nearest;
 }
 
 double Sonars::disturbed(const Round& round, std::size_t i, double own) const {
@@ -110,7 +130,7 @@ double Sonars::disturbed(const Round& round, std::size_t i, double own) const {
   // One of the first of them; the last one stands in for this one.
   const auto place = static_cast<std::size_t>(sequence.uniform() * static_cast<double>(others));
   const std::uint16_t chosen = firing(place, round.number);
-  const Echo heard = echo(round, chosen == i ? firing(others, round.number) : chosen);
+  const Echo& heard = echoes_[chosen == i ? firing(others, round.number) : chosen];
   const Pose2 transducer = round.pose * ring_.poses[i];
   const Vector2 way = heard.point - transducer.position();
   if (heard.distance == infinity || way.dot(geometry::heading(transducer.yaw)) <= 0.0) return own;

@@ -56,7 +56,7 @@ class Sonars {
   /// which says that the cone is free that far or that nothing came back. NaN for those that do not fire in this round.
   /// `round` numbers the rounds of a run.
   void measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t round,
-               std::span<double> ranges) const;
+               std::span<double> ranges);
 
  private:
   /// Where a pulse comes back from.
@@ -68,7 +68,6 @@ class Sonars {
   struct Round {
     const Surroundings& around;
     const Pose2& pose;
-    double c, s;  // cosine and sine of its yaw
     const RandomSource& random;
     std::uint64_t number;
   };
@@ -76,11 +75,10 @@ class Sonars {
   /// How many sonars fire in a round, and the k-th of them.
   std::size_t firing() const;
   std::uint16_t firing(std::size_t k, std::uint64_t round) const;
-  /// The nearest echo of sonar i before noise, of the world or of another body.
-  Echo echo(const Round& round, std::size_t i) const;
-  /// The same, `most` rays at a time.
-  template <std::size_t most>
-  Echo echo_of(const Round& round, std::size_t i) const;
+  /// Fills echoes_ for those that fire.
+  void listen(const Round& round);
+  /// The nearest echo along these rays, which ended so, comes into `nearest` if it is nearer.
+  void take_echo(const Round& round, std::uint16_t i, const RayFan& rays, const RayHit* hits, Echo& nearest) const;
   /// Half of the shortest way on which a pulse comes to sonar i, whose own echo is at `own`, if it hears another one.
   double disturbed(const Round& round, std::size_t i, double own) const;
 
@@ -88,6 +86,7 @@ class Sonars {
   SonarSettings settings_;
   double min_cosine_;                // of the incidence angle
   std::vector<Vector2> directions_;  // of all rays in the body, `rays` for each sonar
+  std::vector<Echo> echoes_;         // of each sonar before noise, of the world or of another body, in this round
 };
 
 }  // namespace kervan::sim

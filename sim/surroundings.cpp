@@ -1,6 +1,8 @@
 #include "sim/surroundings.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cassert>
 #include <cmath>
 
@@ -17,57 +19,114 @@ Segment edge(std::span<const Vector2> corners, std::size_t i) {
   return {corners[i], corners[i + 1 == corners.size() ? 0 : i + 1]};
 }
 
-/// Rays from one point that turn counter-clockwise; finds those that point at a disc without asking each.
-class Bundle {
+/// The rays of some fans as RayPaths, from the origin of the first. In single precision, to find out quickly which rays
+/// are worth asking about.
+class Paths {
  public:
-  explicit Bundle(std::span<const Vector2> directions) : directions_(directions) {}
+  Paths(std::span<const RayFan> fans, double range, std::span<const RayHit> hits) : from_(fans[0].origin) {
+    std::size_t i = 0;
+    for (const RayFan& fan : fans) {
+      const auto x = static_cast<float>(fan.origin.x() - from_.x()), y = static_cast<float>(fan.origin.y() - from_.y());
+      for (const Vector2& direction : fan.directions) {
+        fan_[i] = &fan;
+        direction_[i] = &direction;
+        x_[i] = x;
+        y_[i] = y;
+        dx_[i] = static_cast<float>(direction.x());
+        dy_[i] = static_cast<float>(direction.y());
+        length_[i] = static_cast<float>(std::min(range, hits[i].distance));
+        ++i;
+      }
+    }
+    for (count_ = i; i % 16 != 0; ++i) x_[i] = y_[i] = dx_[i] = dy_[i] = length_[i] = 0.0f;
+    slack_ = 1e-5 * (1.0 + range);
+  }
 
-  /// Calls visit(ray) for all rays that pass within `radius` of the point `to_center` from their origin, and some more.
+  /// Calls visit(i, ray) for all rays that pass within `radius` of the point, and perhaps for some that do so nearly.
+  /// Each returns how far the ray goes from now on.
   template <class Visit>
-  void visit_towards(const Vector2& to_center, double radius, Visit&& visit) const {
-    constexpr std::size_t few = 4;
-    constexpr double blur = 1e-6;  // rad; more than the rounding of what turned() compares
-    const std::size_t count = directions_.size();
-    const double distance = to_center.norm();
-    const double wide = radius + blur * distance;
-    if (count <= few || distance <= wide) return visit_all(0, count, visit);
-    const double sine = wide / distance, cosine = std::sqrt(1.0 - sine * sine);
-    const Vector2 u = to_center / distance;
-    const double right = turned({cosine * u.x() + sine * u.y(), cosine * u.y() - sine * u.x()});
-    const double left = turned({cosine * u.x() - sine * u.y(), cosine * u.y() + sine * u.x()});
-    if (right <= left) return visit_all(first_from(right), first_from(left), visit);
-    visit_all(0, first_from(left), visit);  // the first ray points at it
-    visit_all(first_from(right), count, visit);
+  void visit_near(const Vector2& point, double radius, Visit&& visit) {
+    std::array<std::uint16_t, most_rays / 16> near;
+    const RayPaths paths{x_.data(),  y_.data(),      dx_.data(),
+                         dy_.data(), length_.data(), static_cast<std::int32_t>((count_ + 15) / 16 * 16)};
+    const Vector2 to_point = point - from_;
+    find_near(paths, static_cast<float>(to_point.x()), static_cast<float>(to_point.y()),
+              static_cast<float>(radius + slack_), near.data(), instructions_);
+    for (std::size_t first = 0, k = 0; first < count_; first += 16, ++k)
+      for (unsigned rays = near[k]; rays != 0; rays &= rays - 1) {
+        const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(rays));
+        if (i < count_) length_[i] = static_cast<float>(visit(i, Ray{fan_[i]->origin, *direction_[i]}));
+      }
   }
 
  private:
-  /// Grows with the angle from the first ray to `direction`, from 0 to 4 for a full turn.
-  double turned(const Vector2& direction) const {
-    const double along = directions_[0].dot(direction);
-    return cross(directions_[0], direction) >= 0.0 ? 1.0 - along : 3.0 + along;
-  }
-  std::size_t first_from(double turn) const {
-    std::size_t from = 0, to = directions_.size();
-    while (from < to) {
-      const std::size_t middle = (from + to) / 2;
-      if (turned(directions_[middle]) < turn)
-        from = middle + 1;
-      else
-        to = middle;
+  Vector2 from_;
+  Instructions instructions_ = widest();
+  double slack_;  // m; more than the rounding of what is not much farther away than the rays reach
+  std::size_t count_;
+  std::array<const RayFan*, most_rays> fan_;
+  std::array<const Vector2*, most_rays> direction_;
+  std::array<float, most_rays> x_, y_, dx_, dy_, length_;
+};
+
+/// A body that may stand near others.
+class Stander {
+ public:
+  Stander(const Outline& outline, const Pose2& pose) : outline_(outline), pose_(pose) {}
+
+  /// No more than its distance to one of `bodies`; quick. May be negative. Beyond `within` it is any number from there
+  /// on.
+  double separation(const Bodies& bodies, std::size_t other, double within) {
+    const Vector2 apart = bodies.center(other) - pose_.position();
+    const double distance = apart.norm(), gap = distance - (outline_.circumradius() + bodies.radius(other));
+    if (gap >= within || distance == 0.0) return gap;
+    // Bodies are no discs: seen along the line between the centres they often reach less far.
+    if (!turned_) {
+      c_ = std::cos(pose_.yaw);
+      s_ = std::sin(pose_.yaw);
+      turned_ = true;
     }
-    return from;
-  }
-  template <class Visit>
-  static void visit_all(std::size_t from, std::size_t to, Visit& visit) {
-    for (std::size_t i = from; i < to; ++i) visit(i);
+    const Vector2 axis = apart / distance;
+    const Vector2 in_body(c_ * axis.x() + s_ * axis.y(), c_ * axis.y() - s_ * axis.x());
+    double reach = -infinity, other_reach = -infinity;
+    for (const Vector2& corner : outline_.corners()) reach = std::max(reach, corner.dot(in_body));
+    for (const Vector2& corner : bodies.corners(other))
+      other_reach = std::max(other_reach, (bodies.center(other) - corner).dot(axis));
+    return distance - reach - other_reach - doubt;
   }
 
-  std::span<const Vector2> directions_;
+ private:
+  const Outline& outline_;
+  const Pose2& pose_;
+  bool turned_ = false;
+  double c_ = 1.0, s_ = 0.0;
 };
+
+/// Where the ray meets the edge of a body, if it is nearer than `best` and no farther than `range`, comes into `best`.
+void meet(const Ray& ray, std::span<const Vector2> corners, double range, RayHit& best) {
+  // An edge is worth asking about if its ends do not both lie well on the same side of the ray.
+  constexpr double well = 1e-6;  // m
+  const auto left = [&](const Vector2& corner) { return cross(ray.direction, corner - ray.origin); };
+  const double first = left(corners[0]);
+  double from = first;
+  std::size_t met = corners.size();
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const double to = k + 1 < corners.size() ? left(corners[k + 1]) : first;
+    if (std::min(from, to) <= well && std::max(from, to) >= -well) {
+      const double distance = hit_distance(ray, edge(corners, k));
+      if (distance < best.distance && distance <= range) {
+        best.distance = distance;
+        met = k;
+      }
+    }
+    from = to;
+  }
+  if (met < corners.size()) best.normal = hit_normal(ray, edge(corners, met));
+}
 
 }  // namespace
 
-Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose) {
+Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose, double within) {
   const Pose2 to_body = pose.inverse();
   const double c = std::cos(to_body.yaw), s = std::sin(to_body.yaw);
   const auto in_body = [&](const Vector2& p) {
@@ -81,9 +140,10 @@ Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outl
     return {0.0, pose.position(), pose.position()};
   Clearance nearest;
   const std::span<const Vector2> corners = bodies.corners(other);
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    const Segment side{in_body(edge(corners, i).a), in_body(edge(corners, i).b)};
-    if (outline.separation(side) > nearest.distance + doubt) continue;
+  Segment side{in_body(corners.back()), in_body(corners.back())};
+  for (const Vector2& corner : corners) {
+    side = {side.b, in_body(corner)};
+    if (outline.separation(side) > std::min(nearest.distance, within) + doubt) continue;
     const Clearance found = outline.clearance(side);
     if (found.distance < nearest.distance) nearest = found;
   }
@@ -110,11 +170,11 @@ Room Surroundings::exact_room_among_bodies(const Outline& outline, const Pose2& 
 /// What the bodies leave of the room.
 void Surroundings::take_room(const Outline& outline, const Pose2& pose, Room& room) const {
   if (!bodies_) return;
+  Stander stander(outline, pose);
   const auto consider = [&](std::size_t body) {
     if (left_out(body)) return;
-    const double radii = outline.circumradius() + bodies_->radius(body);
-    if ((bodies_->center(body) - pose.position()).norm() - radii > room.all.distance + doubt) return;
-    const Clearance found = clearance(*bodies_, body, outline, pose);
+    if (stander.separation(*bodies_, body, room.all.distance + doubt) > room.all.distance + doubt) return;
+    const Clearance found = clearance(*bodies_, body, outline, pose, room.all.distance);
     if (found.distance > room.all.distance) return;
     if (found.distance == room.all.distance && (!room.other || bodies_->name(body) >= *room.other)) return;
     room.all = found;
@@ -132,55 +192,42 @@ void Surroundings::take_room(const Outline& outline, const Pose2& pose, Room& ro
 }
 
 bool Surroundings::still_in_the_way(const Room& room, const Outline& outline, const Pose2& pose, double within) const {
-  if (room.other) return clearance(*bodies_, room.body, outline, pose).distance <= within;
+  if (room.other) return clearance(*bodies_, room.body, outline, pose, within).distance <= within;
   return room.shape.map && room.shape.map->clearance({outline, pose}, room.shape.id).distance <= within;
 }
 
 double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose, double within) const {
   double room = infinity;
   if (!bodies_) return room;
+  Stander stander(outline, pose);
   const Vector2 extent = Vector2::Constant(within + outline.circumradius() + bodies_->largest_radius() + doubt);
   bodies_->visit_box(pose.position() - extent, pose.position() + extent, [&](std::size_t body) {
-    if (left_out(body)) return;
-    const double radii = outline.circumradius() + bodies_->radius(body);
-    room = std::min(room, (bodies_->center(body) - pose.position()).norm() - radii);
+    if (!left_out(body)) room = std::min(room, stander.separation(*bodies_, body, within));
   });
   return room;
 }
 
-void Surroundings::cast(const Vector2& origin, std::span<const Vector2> directions, double range,
-                        std::span<RayHit> hits) const {
+void Surroundings::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const {
   assert(std::isfinite(range));
-  world_.cast(origin, directions, range, hits);
-  if (!bodies_ || directions.empty()) return;
+  world_.cast(fans, range, hits);
+  if (!bodies_ || hits.empty()) return;
 
   // Only bodies that reach into the box around all rays, as far as the world lets them go, can be met.
-  Vector2 low = origin, high = origin;
-  for (std::size_t i = 0; i < directions.size(); ++i) {
-    const Vector2 end = origin + std::min(range, hits[i].distance) * directions[i];
-    low = low.cwiseMin(end);
-    high = high.cwiseMax(end);
-  }
+  Vector2 low = fans[0].origin, high = low;
+  const RayHit* hit = hits.data();
+  for (const RayFan& fan : fans)
+    for (const Vector2& direction : fan.directions) {
+      const Vector2 end = fan.origin + std::min(range, (hit++)->distance) * direction;
+      low = low.cwiseMin(end).cwiseMin(fan.origin);
+      high = high.cwiseMax(end).cwiseMax(fan.origin);
+    }
   const Vector2 extent = Vector2::Constant(bodies_->largest_radius() + doubt);
-  const Bundle bundle(directions);
+  Paths paths(fans, range, hits);
   bodies_->visit_box(low - extent, high + extent, [&](std::size_t body) {
     if (left_out(body)) return;
-    const Vector2 to_center = bodies_->center(body) - origin;
-    const double radius = bodies_->radius(body);
-    bundle.visit_towards(to_center, radius, [&](std::size_t i) {
-      const Ray ray{origin, directions[i]};
-      const double along = to_center.dot(ray.direction);
-      if (along < -radius || along - radius > std::min(range, hits[i].distance)) return;
-      if (std::abs(cross(ray.direction, to_center)) > radius) return;
-      const std::span<const Vector2> corners = bodies_->corners(body);
-      std::size_t met = corners.size();
-      for (std::size_t k = 0; k < corners.size(); ++k) {
-        const double distance = hit_distance(ray, edge(corners, k));
-        if (!(distance < hits[i].distance && distance <= range)) continue;
-        hits[i].distance = distance;
-        met = k;
-      }
-      if (met < corners.size()) hits[i].normal = hit_normal(ray, edge(corners, met));
+    paths.visit_near(bodies_->center(body), bodies_->radius(body), [&](std::size_t i, const Ray& ray) {
+      meet(ray, bodies_->corners(body), range, hits[i]);
+      return std::min(range, hits[i].distance);
     });
   });
 }

@@ -48,9 +48,9 @@ class Surroundings {
   /// any number from there on.
   double room_among_bodies(const Outline& outline, const Pose2& pose, double within) const;
 
-  /// What rays from one point meet, as World::cast: the nearest of the world and the bodies. The directions turn
-  /// counter-clockwise, by less than a full turn in all. `range` is finite. Exact as to the bodies.
-  void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
+  /// What rays meet, as World::cast: the nearest of the world and the bodies. `range` is finite. Exact as to the
+  /// bodies.
+  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const;
 
  private:
   void take_room(const Outline& outline, const Pose2& pose, Room& room) const;
@@ -62,7 +62,8 @@ class Surroundings {
 };
 
 /// How near a body at `pose` and one of `bodies` are; 0 when they touch or overlap. Points in map, `on_obstacle` on the
-/// latter. Exact.
-Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose);
+/// latter. Exact up to `within`; farther away it is any distance from there on.
+Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outline, const Pose2& pose,
+                    double within = infinity);
 
 }  // namespace kervan::sim

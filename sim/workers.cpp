@@ -7,6 +7,13 @@ namespace kervan::sim {
 namespace {
 constexpr std::size_t worth_sharing = 16;  // waking somebody takes longer than doing less than this
 constexpr std::size_t portions = 16;       // for each thread, so that none ends much later than the others
+
+/// Within a step of the simulation the next round comes soon: sooner than a thread that sleeps is awake again.
+template <class Happened>
+void wait_awake(Happened&& happened) {
+  constexpr int turns = 200;  // some 100 us
+  for (int i = 0; i < turns && !happened(); ++i) std::this_thread::yield();
+}
 }  // namespace
 
 Workers::Workers(int threads) {
@@ -34,6 +41,7 @@ void Workers::share(std::size_t count, Call call, void* context) {
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
   take_part();
+  wait_awake([this] { return at_work_.load(std::memory_order_acquire) == 0; });
   while (const std::uint32_t left = at_work_.load(std::memory_order_acquire))
     at_work_.wait(left, std::memory_order_acquire);
 }
@@ -48,6 +56,7 @@ void Workers::take_part() {
 
 void Workers::serve() {
   for (std::uint32_t seen = 0;;) {
+    wait_awake([this, seen] { return round_.load(std::memory_order_acquire) != seen; });
     round_.wait(seen, std::memory_order_acquire);
     seen = round_.load(std::memory_order_acquire);
     if (end_) return;

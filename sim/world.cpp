@@ -72,38 +72,33 @@ bool World::solid_at(const Vector2& point) const {
 
 std::optional<RayHit> World::cast(const Ray& ray, double range) const {
   RayHit hit;
-  cast(ray.origin, {&ray.direction, 1}, range, {&hit, 1});
+  const RayFan fan{ray.origin, {&ray.direction, 1}};
+  cast({&fan, 1}, range, {&hit, 1});
   if (hit.distance == infinity) return std::nullopt;
   return hit;
 }
 
-void World::cast(const Vector2& origin, std::span<const Vector2> directions, double range,
-                 std::span<RayHit> hits) const {
-  assert(hits.size() == directions.size());
+void World::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const {
+  if (hits.size() > most_rays) throw std::invalid_argument("too many rays at once");
   std::fill(hits.begin(), hits.end(), RayHit{});
-  constexpr std::size_t most = 256;  // rays at a time, on the stack
-  std::array<float, most> dx, dy, distances;
-  std::array<std::int32_t, most> faces;
-  // A ray or two are done before wide registers are filled.
-  constexpr std::size_t few = 2;
-  const Instructions instructions = directions.size() <= few ? Instructions::scalar : widest();
-  for (std::size_t first = 0; first < directions.size() && !bitmaps_.empty(); first += most) {
-    const std::size_t count = std::min(most, directions.size() - first);
-    for (std::size_t i = 0; i < count; ++i) {
-      dx[i] = static_cast<float>(directions[first + i].x());
-      dy[i] = static_cast<float>(directions[first + i].y());
-    }
-    for (const CellMap& map : bitmaps_) {
-      map.cast(origin, {dx.data(), count}, {dy.data(), count}, range, {distances.data(), count}, {faces.data(), count},
-               instructions);
-      for (std::size_t i = 0; i < count; ++i) {
-        RayHit& hit = hits[first + i];
+  std::array<float, most_rays> distances;
+  std::array<std::int32_t, most_rays> faces;
+  constexpr std::size_t few = 2;  // are done before wide registers are filled
+  for (const CellMap& map : bitmaps_) {
+    map.cast(fans, range, {distances.data(), hits.size()}, {faces.data(), hits.size()},
+             hits.size() <= few ? Instructions::scalar : widest());
+    std::size_t i = 0;
+    for (const RayFan& fan : fans)
+      for (const Vector2& direction : fan.directions) {
         const double distance = distances[i];
-        if (distance < hit.distance && distance <= range) hit = {distance, map.normal(directions[first + i], faces[i])};
+        if (distance < hits[i].distance && distance <= range) hits[i] = {distance, map.normal(direction, faces[i])};
+        ++i;
       }
-    }
   }
-  for (std::size_t i = 0; i < directions.size(); ++i) tall_.map().cast({origin, directions[i]}, range, hits[i]);
+  if (tall_.map().empty()) return;
+  RayHit* hit = hits.data();
+  for (const RayFan& fan : fans)
+    for (const Vector2& direction : fan.directions) tall_.map().cast({fan.origin, direction}, range, *hit++);
 }
 
 std::optional<NearestObstacle> World::nearest(const Vector2& point, double range) const {
@@ -114,6 +109,13 @@ std::optional<NearestObstacle> World::nearest(const Vector2& point, double range
   for (const CellMap& map : bitmaps_) map.edges().nearest(point, range, best);
   if (best.distance > range || best.distance == infinity) return std::nullopt;
   return best;
+}
+
+double World::free_around(const Vector2& point) const {
+  if (!tall_.map().empty() || !low_.map().empty()) return 0.0;
+  double free = infinity;
+  for (const CellMap& map : bitmaps_) free = std::min(free, map.free_around(point));
+  return free;
 }
 
 Clearance World::clearance(const Outline& outline, const Pose2& pose, ShapeRef* nearest) const {

@@ -54,6 +54,9 @@ class Solids {
   ShapeMap map_;
 };
 
+/// So many rays can be asked about at once.
+inline constexpr std::size_t most_rays = 256;
+
 class World {
  public:
   /// Throws std::invalid_argument if a number is not finite, a segment or a box has no extent, a radius is not
@@ -65,11 +68,16 @@ class World {
   /// Exact among shapes; as exact as CellMap says among the cells of bitmaps.
   std::optional<RayHit> cast(const Ray& ray, double range = infinity) const;
 
-  /// The same for many rays from one point, whose directions have length 1: hits[i] is where ray i ends.
-  void cast(const Vector2& origin, std::span<const Vector2> directions, double range, std::span<RayHit> hits) const;
+  /// The same for up to most_rays of them: `hits` is where those of the fans end, one after the other; there are as
+  /// many. Throws std::invalid_argument if there are too many.
+  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const;
 
   /// The nearest obstacle to a point, low or not, no farther than `range`; nothing if there is none. Exact.
   std::optional<NearestObstacle> nearest(const Vector2& point, double range = infinity) const;
+
+  /// No more than the distance from the point to the nearest obstacle, low or not; quick. Often 0 where obstacles are
+  /// no bitmaps.
+  double free_around(const Vector2& point) const;
 
   /// How much room a body has at `pose`: 0 when it touches or overlaps an obstacle, low or not, infinity in a world
   /// without any. Exact; a body that lies wholly inside a solid overlaps it. `nearest` becomes the shape that takes the

@@ -37,7 +37,10 @@ double cpu_seconds() {
 /// Laser scans over half a circle from random free places, all arrays `beams` for each scan.
 struct Scans {
   std::vector<Vector2> origins;
-  std::vector<float> dx, dy;
+  std::vector<float> dx, dy;        // for the textbook's walk
+  std::vector<Vector2> directions;  // the same
+
+  sim::RayFan fan(std::size_t scan) const { return {origins[scan], {&directions[scan * beams], beams}}; }
 };
 
 Scans random_scans(std::size_t count, const Vector2& low, const Vector2& high,
@@ -54,6 +57,7 @@ Scans random_scans(std::size_t count, const Vector2& low, const Vector2& high,
       const Vector2 direction = geometry::heading(yaw + (i - 90) * std::numbers::pi / 180.0);
       scans.dx.push_back(static_cast<float>(direction.x()));
       scans.dy.push_back(static_cast<float>(direction.y()));
+      scans.directions.push_back(direction);
     }
   }
   return scans;
@@ -88,10 +92,10 @@ std::vector<Method> methods(const Scans& scans, const sim::Bitmap& bitmap, const
     if (!available(instructions)) continue;
     all.push_back({texts.first, with_targets ? texts.second : "-", [&, range, set = instructions](auto& distances) {
                      std::array<std::int32_t, beams> faces;
-                     for (std::size_t scan = 0; scan < scans.origins.size(); ++scan)
-                       cells.cast(scans.origins[scan], {&scans.dx[scan * beams], beams},
-                                  {&scans.dy[scan * beams], beams}, range, {&distances[scan * beams], beams}, faces,
-                                  set);
+                     for (std::size_t scan = 0; scan < scans.origins.size(); ++scan) {
+                       const sim::RayFan fan = scans.fan(scan);
+                       cells.cast({&fan, 1}, range, {&distances[scan * beams], beams}, faces, set);
+                     }
                    }});
   }
   return all;
@@ -169,23 +173,22 @@ void bench_segments(const std::string& name, const sim::World& world, bool smoke
   }
   const Scans scans =
       random_scans(smoke ? 20 : 3000, low, high, [&](const Vector2& point) { return !shapes.nearest(point, 0.3); });
-  std::vector<Vector2> directions;
-  for (std::size_t i = 0; i < scans.dx.size(); ++i)
-    directions.push_back(Vector2(scans.dx[i], scans.dy[i]).normalized());
-  std::vector<sim::RayHit> hits(directions.size());
+  std::vector<sim::RayHit> hits(scans.directions.size());
   std::vector<float> found(hits.size()), exact(hits.size());
   const double range = 8.0;
   std::vector<double> with_grid, with_all;
   for (int round = 0; round < (smoke ? 1 : 7); ++round) {
     double start = cpu_seconds();
-    for (std::size_t scan = 0; scan < scans.origins.size(); ++scan)
-      shapes.cast(scans.origins[scan], {&directions[scan * beams], beams}, range, {&hits[scan * beams], beams});
+    for (std::size_t scan = 0; scan < scans.origins.size(); ++scan) {
+      const sim::RayFan fan = scans.fan(scan);
+      shapes.cast({&fan, 1}, range, {&hits[scan * beams], beams});
+    }
     with_grid.push_back(cpu_seconds() - start);
     start = cpu_seconds();
     for (std::size_t i = 0; i < hits.size(); ++i) {
       double nearest = sim::infinity;
       for (const sim::Segment& s : shapes.segments())
-        nearest = std::min(nearest, sim::hit_distance({scans.origins[i / beams], directions[i]}, s));
+        nearest = std::min(nearest, sim::hit_distance({scans.origins[i / beams], scans.directions[i]}, s));
       exact[i] = static_cast<float>(nearest <= range ? nearest : sim::infinity);
     }
     with_all.push_back(cpu_seconds() - start);

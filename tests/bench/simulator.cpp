@@ -149,43 +149,70 @@ void bench_speed(bool smoke) {
       }
 }
 
-/// Discs on a raster of 10 cm cells, as dense in a small world as in a large one.
-sim::Bitmap field(double extent) {
-  const int side = static_cast<int>(10.0 * extent);
+/// The same room again and again, so that every robot has as much around it in a large world as in a small one: walls
+/// around 6.3 x 6.3 m, discs in it, on a raster of 10 cm cells.
+constexpr int room_cells = 63, robots_a_room = 10;
+
+sim::Bitmap rooms(int columns, int rows) {
+  const int width = columns * room_cells, height = rows * room_cells;
   sim::Bitmap map{
-      {}, Vector2::Constant(0.1), side, side, std::vector<std::uint8_t>(static_cast<std::size_t>(side * side))};
+      {}, Vector2::Constant(0.1), width, height, std::vector<std::uint8_t>(static_cast<std::size_t>(width * height))};
+  std::vector<std::array<int, 3>> discs(4);
   std::mt19937 random(1);
-  const auto fill = [&map, side](int column, int row) { map.solid[static_cast<std::size_t>(row * side + column)] = 1; };
-  for (int i = 0; i < side; ++i)
-    for (const int edge : {0, side - 1}) fill(edge, i), fill(i, edge);
-  for (int disc = 0; disc < side * side / 900; ++disc) {  // one for every 9 m2
-    const int x = static_cast<int>(random() % static_cast<unsigned>(side)),
-              y = static_cast<int>(random() % static_cast<unsigned>(side)),
-              radius = 2 + static_cast<int>(random() % 6u);
-    for (int row = std::max(0, y - radius); row < std::min(side, y + radius); ++row)
-      for (int column = std::max(0, x - radius); column < std::min(side, x + radius); ++column)
-        if ((column - x) * (column - x) + (row - y) * (row - y) < radius * radius) fill(column, row);
-  }
+  for (auto& disc : discs)
+    disc = {static_cast<int>(random() % room_cells), static_cast<int>(random() % room_cells),
+            2 + static_cast<int>(random() % 6u)};
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      const int x = column % room_cells, y = row % room_cells;
+      bool solid = x == 0 || y == 0 || x == room_cells - 1 || y == room_cells - 1;
+      for (const auto& [center_x, center_y, radius] : discs)
+        solid |= (x - center_x) * (x - center_x) + (y - center_y) * (y - center_y) < radius * radius;
+      map.solid[static_cast<std::size_t>(row * width + column)] = solid;
+    }
   return map;
 }
 
+/// The same ten robots in every room; they measure with noise of their own, so they do not stay alike.
+Simulation crowd_in_rooms(int columns, int rows) {
+  std::mt19937 random(1);
+  const auto number = [&random](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const double side = 0.1 * room_cells;
+  Simulation one(std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {rooms(1, 1)}}), {}, 1);
+  while (one.robots().size() < robots_a_room) {
+    try {
+      one.spawn(setup(one.robots().size(), {number(0.0, side), number(0.0, side), number(-3.0, 3.0)}, Sensors::both));
+    } catch (const sim::NoRoom&) {
+    }
+  }
+  Simulation all(std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {rooms(columns, rows)}}), {}, 1);
+  for (int room = 0; room < columns * rows; ++room)
+    for (const sim::Robot& robot : one.robots()) {
+      sim::Pose2 start = robot.pose();
+      start.x += side * (room % columns);
+      start.y += side * (room / columns);
+      all.spawn(setup(all.robots().size(), start, Sensors::both));
+    }
+  return all;
+}
+
 void bench_growth(bool smoke) {
-  say("\n## Growth at the same density\n\nA robot for every 4 m2 of a field of discs, both sensors, steps of 100 ms, "
-      "one "
-      "thread.\n\n| robots | world | microseconds for each robot and step | of that of 10 |\n|---|---|---|---|\n");
+  say("\n## Growth at the same density\n\nThe same room of %.1f x %.1f m again and again with ten robots in each, both "
+      "sensors, steps of 100 ms, one thread; median of %d runs.\n\n| robots | rooms | microseconds for each robot and "
+      "step | of that of 10 |\n|---|---|---|---|\n",
+      0.1 * room_cells, 0.1 * room_cells, smoke ? 1 : 5);
   double first = 0.0;
-  for (const std::size_t robots : {10u, 100u, 1000u, 10000u}) {
-    if (smoke && robots > 100) continue;
-    const double extent = 2.0 * std::sqrt(static_cast<double>(robots));
-    const auto world = std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {field(extent)}});
-    std::vector<double> speeds;
-    Simulation simulation = crowd(world, extent, robots, Sensors::both);
+  for (const auto& [columns, rows] : std::array<std::pair<int, int>, 4>{{{1, 1}, {5, 2}, {10, 10}, {40, 25}}}) {
+    if (smoke && columns * rows > 10) continue;
+    Simulation simulation = crowd_in_rooms(columns, rows);
     run(simulation, 100ms, smoke ? 100ms : settle);
-    for (int round = 0; round < (smoke ? 1 : 3); ++round)
+    std::vector<double> speeds;
+    for (int round = 0; round < (smoke ? 1 : 5); ++round)
       speeds.push_back(rate(simulation, 100ms, smoke ? 0.0 : 0.7, thread_seconds));
+    const std::size_t robots = simulation.robots().size();
     const double cost = 1e5 / median(speeds) / static_cast<double>(robots);
     if (first == 0.0) first = cost;
-    say("| %zu | %.0f x %.0f m | %.2f | %.2f |\n", robots, extent, extent, cost, cost / first);
+    say("| %zu | %d | %.2f | %.2f |\n", robots, columns * rows, cost, cost / first);
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 
 #include "sim/simulation.hpp"
@@ -217,22 +218,20 @@ TEST_P(RandomBitmap, EverySetOfInstructionsGivesTheSameBits) {
   for (const Instructions instructions : {Instructions::avx2, Instructions::avx512}) {
     if (!available(instructions)) continue;
     for (const std::size_t count : {1, 7, 8, 15, 16, 17, 181}) {
-      std::vector<float> dx, dy;
-      for (std::size_t i = 0; i < count; ++i) {
-        const Vector2 direction =
-            geometry::heading(i % 5 == 0 ? 0.5 * pi * static_cast<double>(i % 4) : number(-pi, pi));
-        dx.push_back(static_cast<float>(direction.x()));
-        dy.push_back(static_cast<float>(direction.y()));
-      }
+      std::vector<Vector2> directions;
+      for (std::size_t i = 0; i < count; ++i)
+        directions.push_back(geometry::heading(i % 5 == 0 ? 0.5 * pi * static_cast<double>(i % 4) : number(-pi, pi)));
       for (int i = 0; i < 50; ++i) {
         // One more at the end shows that nothing is written there.
         std::vector<float> expected(count + 1, -1.0f), found(count + 1, -1.0f);
         std::vector<std::int32_t> expected_faces(count + 1, -1), found_faces(count + 1, -1);
         const Vector2 origin = point(0.1);
+        const std::size_t half = i % 2 == 0 ? 0 : count / 2;
+        const std::array<RayFan, 2> fans{
+            {{origin, {directions.data(), half}}, {point(0.1), {directions.data() + half, count - half}}}};
         const double range = number(0.1, 5.0);
-        cells.cast(origin, dx, dy, range, {expected.data(), count}, {expected_faces.data(), count},
-                   Instructions::scalar);
-        cells.cast(origin, dx, dy, range, {found.data(), count}, {found_faces.data(), count}, instructions);
+        cells.cast(fans, range, {expected.data(), count}, {expected_faces.data(), count}, Instructions::scalar);
+        cells.cast(fans, range, {found.data(), count}, {found_faces.data(), count}, instructions);
         ASSERT_EQ(found, expected) << count << " rays from " << origin.transpose();
         ASSERT_EQ(found_faces, expected_faces) << count << " rays from " << origin.transpose();
       }
@@ -248,10 +247,30 @@ TEST_P(RandomBitmap, NearestAndClearanceAreThoseOfBruteForce) {
     const Vector2 p = point(0.3);
     const Pose2 pose{p.x(), p.y(), number(-pi, pi)};
     EXPECT_NEAR(world.nearest(p)->distance, boxes.nearest(p)->distance, 1e-9);
+    EXPECT_LE(world.free_around(p), world.nearest(p)->distance);
     const Clearance found = world.clearance(body, pose);
     EXPECT_NEAR(found.distance, boxes.clearance(body, pose).distance, 1e-9);
     EXPECT_NEAR((found.on_obstacle - found.on_outline).norm(), found.distance, 1e-9);
   }
+}
+
+TEST(FreeAround, ReachesNearlyToTheNextSolidCell) {
+  Bitmap map{{-1.0, -2.0, 0.0}, Vector2::Constant(0.1), 60, 60, std::vector<std::uint8_t>(3600)};
+  map.solid[30 * 60 + 50] = 1;  // from (4.0, 1.0) to (4.1, 1.1)
+  const World world({.bitmaps = {map}});
+  EXPECT_NEAR(world.free_around({2.55, 1.05}), 1.4, 1e-9) << "a cell less than the 1.45 m to its edge";
+  EXPECT_NEAR(world.free_around({-0.95, 1.05}), 0.0, 1e-9) << "beside the border";
+  EXPECT_EQ(world.free_around({4.05, 1.05}), 0.0);
+  EXPECT_EQ(world.free_around({9.0, 9.0}), 0.0) << "outside nothing is known";
+  EXPECT_EQ(World({.segments = {{{0.0, 0.0}, {1.0, 0.0}}}, .bitmaps = {map}}).free_around({2.55, 1.05}), 0.0);
+  EXPECT_EQ(World({}).free_around({0.0, 0.0}), infinity);
+}
+
+TEST(Rays, TooManyAtOnceAreRefused) {
+  const std::vector<Vector2> directions(most_rays + 1, Vector2(1.0, 0.0));
+  const RayFan fan{Vector2::Zero(), directions};
+  std::vector<RayHit> hits(directions.size());
+  EXPECT_THROW(World({}).cast({&fan, 1}, 1.0, hits), std::invalid_argument);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, RandomBitmap, testing::Range(0u, 8u));

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
 #include <set>
 
@@ -66,9 +67,13 @@ TEST_P(Crowd, RoomIsThatOfAskingEverybody) {
       double among = infinity;
       for (std::size_t other = 0; other < bodies_.size(); ++other) {
         if (other == self) continue;
-        among = std::min(
-            among, (bodies_.center(other) - at.position()).norm() - (body.circumradius() + bodies_.radius(other)));
         const Clearance found = clearance(bodies_, other, body, at);
+        among = std::min(among, found.distance);
+        const double within = number(0.0, 3.0), limited = clearance(bodies_, other, body, at, within).distance;
+        if (found.distance <= within)
+          EXPECT_EQ(limited, found.distance);
+        else
+          EXPECT_GT(limited, within);
         if (found.distance > nearest.distance) continue;
         if (found.distance == nearest.distance && (!name || bodies_.name(other) >= *name)) continue;
         nearest = found;
@@ -83,10 +88,11 @@ TEST_P(Crowd, RoomIsThatOfAskingEverybody) {
       EXPECT_EQ(room.world, world.clearance(body, at).distance);
       for (const double within : {0.1, 1.0, 10.0, infinity}) {
         const double found = around.room_among_bodies(body, at, within);
-        if (among < within)
-          EXPECT_EQ(found, among);
-        else
-          EXPECT_GE(found, within);
+        if (found < within) {
+          EXPECT_LE(found, among);
+        } else {
+          EXPECT_GE(among, within);
+        }
       }
     }
   }
@@ -102,10 +108,14 @@ TEST_P(Crowd, RaysMeetWhatAskingEverybodyMeets) {
     std::vector<Vector2> directions;
     for (int k = 0; k < count; ++k) directions.push_back(geometry::heading(yaw + k * field / std::max(1, count - 1)));
     std::vector<RayHit> hits(directions.size()), expected(directions.size());
-    Surroundings(world_, bodies_, self).cast(origin, directions, range, hits);
-    world_.cast(origin, directions, range, expected);
+    // Part of the rays come from another place.
+    const std::size_t half = directions.size() / 2;
+    const std::array<RayFan, 2> fans{{{origin, {directions.data(), half}},
+                                      {pose().position(), {directions.data() + half, directions.size() - half}}}};
+    Surroundings(world_, bodies_, self).cast(fans, range, hits);
+    world_.cast(fans, range, expected);
     for (std::size_t k = 0; k < directions.size(); ++k) {
-      const Ray ray{origin, directions[k]};
+      const Ray ray{fans[k < half ? 0 : 1].origin, directions[k]};
       for (std::size_t body = 0; body < bodies_.size(); ++body) {
         if (body == self) continue;
         const auto corners = bodies_.corners(body);
@@ -119,6 +129,42 @@ TEST_P(Crowd, RaysMeetWhatAskingEverybodyMeets) {
       if (expected[k].distance < infinity) {
         EXPECT_EQ(hits[k].normal, expected[k].normal);
       }
+    }
+  }
+}
+
+TEST_P(Crowd, EverySetOfInstructionsFindsTheSameRaysNearADisc) {
+  constexpr std::size_t count = 48;
+  std::array<float, count> x, y, dx, dy, length;
+  const auto small = [this](double low, double high) { return static_cast<float>(number(low, high)); };
+  for (int round = 0; round < 100; ++round) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector2 direction = geometry::heading(number(-pi, pi));
+      x[i] = small(-0.3, 0.3);
+      y[i] = small(-0.3, 0.3);
+      dx[i] = static_cast<float>(direction.x());
+      dy[i] = static_cast<float>(direction.y());
+      length[i] = small(0.0, 5.0);
+    }
+    const RayPaths paths{x.data(), y.data(), dx.data(), dy.data(), length.data(), count};
+    const Vector2 center(small(-5.0, 5.0), small(-5.0, 5.0));
+    const float radius = small(0.0, 2.0);
+    const auto near = [&](Instructions instructions) {
+      std::array<std::uint16_t, count / 16> found;
+      find_near(paths, static_cast<float>(center.x()), static_cast<float>(center.y()), radius, found.data(),
+                instructions);
+      return found;
+    };
+    const auto expected = near(Instructions::scalar);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Segment path{{x[i], y[i]}, {x[i] + length[i] * dx[i], y[i] + length[i] * dy[i]}};
+      if ((nearest_point(path, center) - center).norm() < radius - 1e-4) {
+        EXPECT_TRUE(expected[i / 16] >> (i % 16) & 1);
+      }
+    }
+    for (const Instructions instructions : {Instructions::avx2, Instructions::avx512}) {
+      if (!available(instructions)) continue;
+      EXPECT_EQ(near(instructions), expected);
     }
   }
 }

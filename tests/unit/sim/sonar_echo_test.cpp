@@ -180,7 +180,7 @@ TEST(SonarFiring, InTurnOneOfEachArrayFires) {
   const SonarRing& ring = p3dx().sonars;
   const World world = wall_at(1.0);
   std::array<double, 16> ranges{};
-  const Sonars sonars(ring, {.firing = SonarFiring::sequential});
+  Sonars sonars(ring, {.firing = SonarFiring::sequential});
   for (std::uint64_t slot = 0; slot < 20; ++slot) {
     sonars.measure(world, Pose2{}, source, slot, ranges);
     for (std::size_t i = 0; i < 16; ++i)
@@ -192,7 +192,7 @@ TEST(SonarFiring, WithoutArraysOneFiresAfterTheOther) {
   SonarRing ring = p3dx().sonars;
   ring.arrays.clear();
   std::array<double, 16> ranges{};
-  const Sonars sonars(ring, {.firing = SonarFiring::sequential});
+  Sonars sonars(ring, {.firing = SonarFiring::sequential});
   for (std::uint64_t slot = 0; slot < 32; ++slot) {
     sonars.measure(wall_at(1.0), Pose2{}, source, slot, ranges);
     for (std::size_t i = 0; i < 16; ++i) EXPECT_EQ(std::isnan(ranges[i]), i != slot % 16);
