@@ -56,7 +56,12 @@ inline bool has_cell(const geometry::Vector2& point) {
 
 /// The cell that a point of the map lies in; `resolution` is the side of a cell, m. The point must have a cell.
 inline Cell cell_of(const geometry::Vector2& point, double resolution) {
-  return {static_cast<int>(std::floor(point.x() / resolution)), static_cast<int>(std::floor(point.y() / resolution))};
+  // As std::floor(), which is a call of a library.
+  const auto below = [](double value) {
+    const int whole = static_cast<int>(value);
+    return whole - (value < whole ? 1 : 0);
+  };
+  return {below(point.x() / resolution), below(point.y() / resolution)};
 }
 
 inline geometry::Vector2 center_of(const Cell& cell, double resolution) {

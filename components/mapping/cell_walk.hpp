@@ -26,15 +26,27 @@ class CellWalk {
   }
 
   grid::Cell cell() const { return cell(at_, minor_); }
-  /// Of the cell from the first one in a grid whose rows are `stride` apart.
-  std::ptrdiff_t offset(std::ptrdiff_t stride) const {
-    const std::ptrdiff_t a = major_sign_ * at_, b = minor_sign_ * (minor_ >> 32);
-    return along_x_ ? a + b * stride : b + a * stride;
-  }
   bool at_end() const { return at_ == steps_; }
   void step() {
     ++at_;
     minor_ += slope_;
+  }
+
+  /// use(cell) for each cell but the last one, whose place it returns. `first`: the place of the first one in a grid
+  /// that holds them all and whose rows are `stride` apart. For a walk that has not begun.
+  template <class Value, class Use>
+  Value* over(Value* first, std::ptrdiff_t stride, Use use) const {
+    std::ptrdiff_t ahead = major_sign_ * (along_x_ ? 1 : stride);
+    const std::ptrdiff_t aside = minor_sign_ * (along_x_ ? stride : 1);
+    if (slope_ == static_cast<std::int64_t>(one)) ahead += aside;
+    const auto slope = static_cast<std::uint32_t>(slope_);
+    auto minor = static_cast<std::uint32_t>(half);
+    for (int left = steps_; left > 0; --left) {
+      use(*first);
+      minor += slope;
+      first += ahead + (minor < slope ? aside : 0);  // what is carried over is a step to the side
+    }
+    return first;
   }
 
   /// Around all of its cells.

@@ -12,8 +12,8 @@ namespace {
 constexpr float inverse_of_most_known = 1.0f / (1.0f - grid::least_unknown);
 
 /// Where the first cell of an eight is.
-template <class CellValue>
-CellValue* cells_at(CellValue* tip, std::ptrdiff_t stride, const grid::Cell& place) {
+template <class CellValue, class Place>
+CellValue* cells_at(CellValue* tip, std::ptrdiff_t stride, const Place& place) {
   return tip + place.y * stride + place.x;
 }
 
@@ -70,22 +70,25 @@ __m128i load(const Eight<Value>& eight) {
 
 void add_cone(grid::LogOdds* tip, std::ptrdiff_t stride, const Cone<std::int16_t>& cone, std::size_t count,
               ConeReading reading) {
-  const auto cells_of = [&](std::size_t i) {
-    return reinterpret_cast<__m128i*>(cells_at(tip, stride, cone.places[i]));
-  };
+  // Copies of the pointers: a store of a vector may, for all the compiler knows, change a member.
+  const auto* const places = cone.places.data();
+  const auto* const empty = cone.empty.data();
+  const auto cells_of = [=](std::size_t i) { return reinterpret_cast<__m128i*>(cells_at(tip, stride, places[i])); };
   const std::size_t all_empty = std::min(count, cone.wholly_before(reading.empty_below));
   for (std::size_t i = 0; i < all_empty; ++i) {
     __m128i* const cells = cells_of(i);
-    _mm_storeu_si128(cells, _mm_adds_epi16(_mm_loadu_si128(cells), load(cone.empty[i])));
+    _mm_storeu_si128(cells, _mm_adds_epi16(_mm_loadu_si128(cells), load(empty[i])));
   }
+  const auto* const occupied = cone.occupied.data();
+  const auto* const distances = cone.distance.data();
   const __m128i empty_below = _mm_set1_epi16(reading.empty_below);
   const __m128i beyond = _mm_set1_epi16(static_cast<std::int16_t>(reading.occupied_to + 1));
   for (std::size_t i = all_empty; i < count; ++i) {
     __m128i* const cells = cells_of(i);
-    const __m128i distance = load(cone.distance[i]);
+    const __m128i distance = load(distances[i]);
     const __m128i is_empty = _mm_cmplt_epi16(distance, empty_below), is_near = _mm_cmplt_epi16(distance, beyond);
-    const __m128i weight = _mm_or_si128(_mm_and_si128(is_empty, load(cone.empty[i])),
-                                        _mm_andnot_si128(is_empty, _mm_and_si128(is_near, load(cone.occupied[i]))));
+    const __m128i weight = _mm_or_si128(_mm_and_si128(is_empty, load(empty[i])),
+                                        _mm_andnot_si128(is_empty, _mm_and_si128(is_near, load(occupied[i]))));
     _mm_storeu_si128(cells, _mm_adds_epi16(_mm_loadu_si128(cells), weight));
   }
 }
@@ -124,12 +127,16 @@ void combine_four(float* cells, const float* empty_weights, const float* occupie
 
 void add_cone(grid::MassCell* tip, std::ptrdiff_t stride, const Cone<float>& cone, std::size_t count,
               ConeReading reading) {
-  const auto cells_of = [&](std::size_t i) { return &cells_at(tip, stride, cone.places[i])->occupied; };
+  const auto* const places = cone.places.data();
+  const auto* const empties = cone.empty.data();
+  const auto* const occupieds = cone.occupied.data();
+  const auto* const distances = cone.distance.data();
+  const auto cells_of = [=](std::size_t i) { return &cells_at(tip, stride, places[i])->occupied; };
   const std::size_t all_empty = std::min(count, cone.wholly_before(reading.empty_below));
   const __m128 yes = _mm_castsi128_ps(_mm_set1_epi32(-1)), no = _mm_setzero_ps(), nothing[2] = {no, no};
   const auto* const no_weights = reinterpret_cast<const float*>(nothing);
   for (std::size_t i = 0; i < all_empty; ++i) {
-    const float* const empty = cone.empty[i].of.data();
+    const float* const empty = empties[i].of.data();
     combine_four(cells_of(i), empty, no_weights, yes, no);
     combine_four(cells_of(i) + 8, empty + 4, no_weights, yes, no);
   }
@@ -137,8 +144,8 @@ void add_cone(grid::MassCell* tip, std::ptrdiff_t stride, const Cone<float>& con
   const __m128i beyond = _mm_set1_epi16(static_cast<std::int16_t>(reading.occupied_to + 1));
   for (std::size_t i = all_empty; i < count; ++i) {
     float* const cells = cells_of(i);
-    const float *const empty = cone.empty[i].of.data(), *const occupied = cone.occupied[i].of.data();
-    const __m128i distance = load(cone.distance[i]);
+    const float *const empty = empties[i].of.data(), *const occupied = occupieds[i].of.data();
+    const __m128i distance = load(distances[i]);
     const __m128i is_empty = _mm_cmplt_epi16(distance, empty_below), is_near = _mm_cmplt_epi16(distance, beyond);
     combine_four(cells, empty, occupied, _mm_castsi128_ps(_mm_unpacklo_epi16(is_empty, is_empty)),
                  _mm_castsi128_ps(_mm_unpacklo_epi16(is_near, is_near)));

@@ -17,7 +17,7 @@ struct ConeReading {
 };
 
 /// Bayes' rule (equation 15) as an addition of logarithms. `tip`: the transducer's cell in a grid whose rows are
-/// `stride` apart. The first `count` eights of the cone must lie in the grid.
+/// `stride` apart (negative: the cone is mirrored). The first `count` eights of the cone must lie in the grid.
 void add_cone(grid::LogOdds* tip, std::ptrdiff_t stride, const Cone<std::int16_t>& cone, std::size_t count,
               ConeReading reading);
 

@@ -34,20 +34,9 @@ float occupied_mass(const SonarModel& model, double r, double alpha) {
   return model.params().record_above > 0.0 && !(p > model.params().record_above) ? 0.0f : mass(model, p);
 }
 
+/// Rounded, from -1 on.
 std::int16_t millimetres(double metres) {
-  return static_cast<std::int16_t>(std::lround(std::clamp(1000.0 * metres, -1.0, 32766.0)));
-}
-
-/// The cone of a reading, added to cells of either kind; false if there is no memory for it.
-template <class Value, class Weight>
-bool add_to(grid::Grid<Value>& cells, const grid::Cell& tip, const Cone<Weight>& cone, ConeReading reading) {
-  const std::size_t count = cone.up_to(std::max<int>(reading.occupied_to, reading.empty_below - 1));
-  if (count == 0) return true;
-  const grid::CellBox box = cone.boxes[count - 1].moved_by(tip);
-  if (cells.cover(grid::united(box, {tip.x, tip.y, 1, 1})) == grid::Growth::refused) return false;
-  add_cone(cells.place(tip), cells.stride(), cone, count, reading);
-  cells.touch(box);
-  return true;
+  return static_cast<std::int16_t>(static_cast<int>(std::clamp(1000.0 * metres, -1.0, 32766.0) + 1.5) - 1);
 }
 
 }  // namespace
@@ -70,50 +59,56 @@ ReadingResult SonarMapper::add(const geometry::Pose2& transducer, double range, 
   if (range < limits.min_range || range < 0.0) return ReadingResult::refused_range;
   if (!grid::has_cell(transducer.position()) || !std::isfinite(transducer.yaw)) return ReadingResult::refused_place;
   const bool echo = range < limits.max_range && range < params_.model.max_range;
-  Along along{grid::cell_of(transducer.position(), params_.resolution),
-              transducer.yaw,
-              geometry::heading(transducer.yaw),
-              0.0,
-              0.0,
-              -1.0};
-  // The cone begins in the middle of its cell: what the transducer is ahead of that, the cone is longer.
-  const double ahead = (transducer.position() - grid::center_of(along.tip, params_.resolution)).dot(along.direction);
+  Along along{grid::cell_of(transducer.position(), params_.resolution), {}, transducer.yaw, 0.0, 0.0, -1.0};
+  along.offset = transducer.position() - grid::center_of(along.tip, params_.resolution);
   if (echo) {
     const RegionBorders borders = model_.borders(range);
-    along.empty_below = borders.empty_below + ahead;
-    along.occupied_to = borders.occupied_to + ahead;
-    if (borders.occupied_to > borders.empty_below) along.echo = range + ahead;
+    along.empty_below = borders.empty_below;
+    along.occupied_to = borders.occupied_to;
+    if (borders.occupied_to > borders.empty_below) along.echo = range;
   } else {
-    along.empty_below = along.occupied_to =
-        std::min({params_.no_echo_limit, limits.max_range, params_.model.max_range}) + ahead;
+    along.empty_below = std::min({params_.no_echo_limit, limits.max_range, params_.model.max_range});
   }
   const bool added = std::visit([&](auto& cells) { return add(cells, along); }, cells_);
   return !added ? ReadingResult::refused_memory : echo ? ReadingResult::echo : ReadingResult::no_echo;
 }
 
-bool SonarMapper::add(grid::Grid<grid::LogOdds>& cells, const Along& reading) {
-  return add_to(cells, reading.tip, log_odds_cones_.at(reading.yaw),
-                {millimetres(reading.empty_below), millimetres(reading.echo < 0.0 ? -1.0 : reading.occupied_to)});
+template <class Value, class Weight>
+bool SonarMapper::add_cone_to(grid::Grid<Value>& cells, const PlacedCone<Weight>& placed, const Along& along) {
+  const double ahead = along.offset.dot(placed.axis);
+  const ConeReading reading{millimetres(along.empty_below + ahead),
+                            millimetres(along.echo < 0.0 ? -1.0 : along.occupied_to + ahead)};
+  const std::size_t count = placed.cone.up_to(std::max<int>(reading.occupied_to, reading.empty_below - 1));
+  if (count == 0) return true;
+  const grid::CellBox box = placed.box(count).moved_by(along.tip);
+  if (cells.cover(grid::united(box, {along.tip.x, along.tip.y, 1, 1})) == grid::Growth::refused) return false;
+  add_cone(cells.place(along.tip), placed.stride(cells.stride()), placed.cone, count, reading);
+  cells.touch(box);
+  return true;
 }
 
-bool SonarMapper::add(grid::Grid<grid::MassCell>& cells, const Along& reading) {
-  return add_to(cells, reading.tip, mass_cones_.at(reading.yaw),
-                {millimetres(reading.empty_below), millimetres(reading.echo < 0.0 ? -1.0 : reading.occupied_to)});
+bool SonarMapper::add(grid::Grid<grid::LogOdds>& cells, const Along& along) {
+  return add_cone_to(cells, log_odds_cones_.at(along.yaw), along);
 }
 
-bool SonarMapper::add(grid::Grid<grid::Certainty>& cells, const Along& reading) {
-  const double length = (reading.echo < 0.0 ? reading.empty_below : reading.echo) / params_.resolution;
+bool SonarMapper::add(grid::Grid<grid::MassCell>& cells, const Along& along) {
+  return add_cone_to(cells, mass_cones_.at(along.yaw), along);
+}
+
+bool SonarMapper::add(grid::Grid<grid::Certainty>& cells, const Along& along) {
+  const geometry::Vector2 axis = headings_.direction(along.yaw);
+  const double length =
+      ((along.echo < 0.0 ? along.empty_below : along.echo) + along.offset.dot(axis)) / params_.resolution;
   if (length < 0.0) return true;
-  CellWalk walk(reading.tip, reading.direction, length);
+  const CellWalk walk(along.tip, axis, length);
   const grid::CellBox box = walk.box();
   if (cells.cover(box) == grid::Growth::refused) return false;
-  grid::Certainty* const tip = cells.place(reading.tip);
-  for (; !walk.at_end(); walk.step()) tip[walk.offset(cells.stride())].lower();
-  grid::Certainty& end = tip[walk.offset(cells.stride())];
-  if (reading.echo < 0.0)
-    end.lower();
+  grid::Certainty* const end =
+      walk.over(cells.place(along.tip), cells.stride(), [](grid::Certainty& cell) { cell.lower(); });
+  if (along.echo < 0.0)
+    end->lower();
   else
-    end.raise();
+    end->raise();
   cells.touch(box);
   return true;
 }

@@ -64,22 +64,27 @@ class SonarMapper {
   void read_percent(const grid::CellBox& box, std::span<std::int8_t> percent) const;
 
  private:
-  /// Empty up to `empty_below`, occupied from there to `occupied_to`, m along the axis; the latter at most the former
-  /// if there was no echo.
+  /// Empty up to `empty_below`, occupied from there to `occupied_to`, m along the axis from the transducer; the latter
+  /// at most the former if there was no echo. A cone begins in the middle of its cell: what the transducer is ahead of
+  /// that, along the cone's axis, the cone is longer.
   struct Along {
     grid::Cell tip;
+    geometry::Vector2 offset;  ///< of the transducer from the middle of its cell, m
     double yaw;
-    geometry::Vector2 direction;
     double empty_below;
     double occupied_to;
     double echo;  // m; where an echo came from, negative without
   };
-  bool add(grid::Grid<grid::LogOdds>& cells, const Along& reading);
-  bool add(grid::Grid<grid::MassCell>& cells, const Along& reading);
-  bool add(grid::Grid<grid::Certainty>& cells, const Along& reading);
+  bool add(grid::Grid<grid::LogOdds>& cells, const Along& along);
+  bool add(grid::Grid<grid::MassCell>& cells, const Along& along);
+  bool add(grid::Grid<grid::Certainty>& cells, const Along& along);
+  /// False if there is no memory for it.
+  template <class Value, class Weight>
+  bool add_cone_to(grid::Grid<Value>& cells, const PlacedCone<Weight>& placed, const Along& along);
 
   SonarMapperParams params_;
   SonarModel model_;
+  Headings headings_;
   ConeStencil<std::int16_t> log_odds_cones_;
   ConeStencil<float> mass_cones_;
   std::variant<grid::Grid<grid::LogOdds>, grid::Grid<grid::MassCell>, grid::Grid<grid::Certainty>> cells_;

@@ -33,13 +33,14 @@ float occupied_mass(const SonarModel& model, double r, double alpha) {
 Stencil stencil() { return Stencil(SonarModel({.max_range = 3.0}), resolution, empty_weight, occupied_weight); }
 
 /// The cells of a cone that are told anything, with their weights.
-std::map<grid::Cell, std::pair<int, int>> weights(const Cone<std::int16_t>& cone) {
+std::map<grid::Cell, std::pair<int, int>> weights(const PlacedCone<std::int16_t>& placed) {
+  const Cone<std::int16_t>& cone = placed.cone;
   std::map<grid::Cell, std::pair<int, int>> result;
   for (std::size_t i = 0; i < cone.places.size(); ++i)
     for (std::size_t k = 0; k < 8; ++k)
       if (cone.distance[i].of[k] != never_reached)
-        result[{cone.places[i].x + static_cast<int>(k), cone.places[i].y}] = {cone.empty[i].of[k],
-                                                                              cone.occupied[i].of[k]};
+        result[{cone.places[i].x + static_cast<int>(k), (placed.mirrored ? -1 : 1) * cone.places[i].y}] = {
+            cone.empty[i].of[k], cone.occupied[i].of[k]};
   return result;
 }
 
@@ -95,12 +96,47 @@ TEST(Cone, HasExactlyTheCellsThatTheModelTellsSomething) {
   }
 }
 
-TEST(Cone, IsThatOfTheNearestHeading) {
-  EXPECT_EQ(Stencil::heading_of(0.0), 0);
-  EXPECT_EQ(Stencil::heading_of(radians(90.0)), 64);
-  EXPECT_EQ(Stencil::heading_of(radians(-90.0)), 192);
-  EXPECT_EQ(Stencil::heading_of(radians(359.9)), 0);
-  EXPECT_EQ(Stencil::heading_of(radians(360.0 * 5 + 1.4)), 1);
+TEST(Cone, LiesWithinItsBoxOnEitherSide) {
+  Stencil cones = stencil();
+  for (int heading = 0; heading < 256; ++heading) {
+    const PlacedCone<std::int16_t> placed = cones.cone(heading);
+    const grid::CellBox box = placed.box(placed.cone.places.size());
+    for (const auto& [cell, weight] : weights(placed)) EXPECT_TRUE(box.contains(cell)) << heading;
+    EXPECT_NEAR(placed.axis.y(), std::sin(radians(360.0) * heading / 256), 1e-12);
+    EXPECT_NEAR(placed.axis.x(), std::cos(radians(360.0) * heading / 256), 1e-12);
+  }
+}
+
+TEST(Distances, AreCountedAsByBisection) {
+  std::mt19937 random(1);
+  for (const int most : {10, 300, 32000}) {
+    std::vector<std::int16_t> values;
+    for (int i = 0; i < 200; ++i) values.push_back(static_cast<std::int16_t>(random() % static_cast<unsigned>(most)));
+    std::sort(values.begin(), values.end());
+    const Distances distances(values);
+    for (int limit = -1; limit < most + 100; ++limit)
+      ASSERT_EQ(distances.up_to(limit), std::upper_bound(values.begin(), values.end(), limit) - values.begin())
+          << limit << " of " << most;
+  }
+  EXPECT_EQ(Distances().up_to(100), 0u);
+}
+
+TEST(Headings, AreTheNearestToAnAngle) {
+  EXPECT_EQ(Headings::nearest(0.0), 0);
+  EXPECT_EQ(Headings::nearest(radians(90.0)), 64);
+  EXPECT_EQ(Headings::nearest(radians(-90.0)), 192);
+  EXPECT_EQ(Headings::nearest(radians(359.9)), 0);
+  EXPECT_EQ(Headings::nearest(radians(360.0 * 5 + 1.4)), 1);
+  EXPECT_EQ(Headings::nearest(radians(-360.0 * 5 - 1.4)), 255);
+}
+
+TEST(Headings, GiveDirectionsToTheFourteenthDigit) {
+  const Headings headings;
+  for (int i = -20000; i <= 20000; ++i) {
+    const double yaw = 0.001 * i;
+    EXPECT_NEAR(headings.direction(yaw).x(), std::cos(yaw), 1e-14) << yaw;
+    EXPECT_NEAR(headings.direction(yaw).y(), std::sin(yaw), 1e-14) << yaw;
+  }
 }
 
 TEST(Cone, ReachesNoFartherThanSixteenBitsOfMillimetres) {
@@ -116,12 +152,13 @@ void expect_equal_kernels(ConeStencil<Weight> cones) {
   portable.cover(box);
   std::mt19937 random(1);
   for (int i = 0; i < 500; ++i) {
-    const Cone<Weight>& cone = cones.cone(static_cast<int>(random() % 256));
+    const PlacedCone<Weight> placed = cones.cone(static_cast<int>(random() % 256));
+    const Cone<Weight>& cone = placed.cone;
     const auto empty_below = static_cast<std::int16_t>(random() % 3200);
     const ConeReading reading{empty_below, static_cast<std::int16_t>(empty_below + random() % 300 - 50)};
     const std::size_t count = cone.up_to(std::max(reading.empty_below, reading.occupied_to));
-    add_cone(wide.place({0, 0}), wide.stride(), cone, count, reading);
-    add_cone_portably(portable.place({0, 0}), portable.stride(), cone, count, reading);
+    add_cone(wide.place({0, 0}), placed.stride(wide.stride()), cone, count, reading);
+    add_cone_portably(portable.place({0, 0}), placed.stride(portable.stride()), cone, count, reading);
   }
   EXPECT_EQ(wide.values(), portable.values());
   EXPECT_NE(wide.at({3, 0}), Value{});
@@ -140,8 +177,8 @@ TEST(ConeKernel, OfMassesIsDempstersRule) {
   cone.distance.push_back({{100, 200, 300, 400, off, off, off, off}});
   cone.empty.push_back({{0.825f, 0.825f, 0.825f, 0.825f}});
   cone.occupied.push_back({{0.5227f, 0.5227f, 0.5227f, 0.5227f}});
-  cone.nearest.push_back(100);
-  cone.within.push_back(400);
+  cone.nearest = Distances({100});
+  cone.within = Distances({400});
   cone.places.push_back({0, 0});
   std::array<grid::MassCell, 8> cells{};
   cells[1] = {0.5227f, 0.0f};
