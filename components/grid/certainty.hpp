@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace kervan::grid {
@@ -17,11 +19,19 @@ class Certainty {
   bool known() const { return state_ != 0; }
 
   void raise() { state_ = static_cast<std::uint8_t>(std::min(value() + certainty_up, most_certain) + 1); }
-  void lower() { state_ = static_cast<std::uint8_t>(std::max(int{state_}, 1 + certainty_down) - certainty_down); }
+  void lower() { state_ = lowered[state_]; }  // half of the instructions: of a ray nearly all cells are lowered
 
   bool operator==(const Certainty&) const = default;
 
  private:
+  static constexpr auto lowered = [] {
+    std::array<std::uint8_t, most_certain + 2> states{};
+    for (int state = 0; state < most_certain + 2; ++state)
+      states[static_cast<std::size_t>(state)] =
+          static_cast<std::uint8_t>(std::max(state, 1 + certainty_down) - certainty_down);
+    return states;
+  }();
+
   std::uint8_t state_ = 0;  // 0: unknown; else 1 + the value
 };
 

@@ -25,6 +25,7 @@ struct KeeperParams {
   double resolution = 0.05;
   double memory = 256.0;
   std::string file;
+  map_file::Format image = map_file::Format::png;
   std::string frame = "map";
   Duration period = 500ms;
   Duration checkpoint_period = 5s;
@@ -36,6 +37,7 @@ struct KeeperParams {
     v(memory, "memory",
       {.unit = "", .min = 0.1, .max = 16384.0, .help = "That each layer of the map may take, in MiB."});
     v(file, "file", {.help = "Where the map is kept beyond the run; empty: in the run's folder."});
+    v(image, "image", {.choices = {"png", "pgm"}, .help = "Format of the picture that is left for map_server."});
     v(frame, "frame", {.help = "Name of the map's frame."});
     v(period, "period", {.min = 0.01, .max = 60.0, .help = "Time between two looks at what has changed."});
     v(checkpoint_period, "checkpoint_period",
@@ -199,7 +201,7 @@ class KeeperComponent final : public Component {
     if (run_folder().empty()) return;
     try {
       map_file::save(grid::to_map_file(map_.merged()), (run_folder() / (stem() + ".yaml")).string(),
-                     map_file::Mode::trinary);
+                     map_file::Mode::trinary, params_.image);
     } catch (const std::invalid_argument& error) {
       log().error("{}", error.what());
     }

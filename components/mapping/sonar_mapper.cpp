@@ -20,11 +20,12 @@ std::int16_t occupied_log_odds(const SonarModel& model, double r, double alpha) 
   return grid::log_odds_of(model.counted_occupied(r, alpha));
 }
 
-/// What is certain leaves a doubt, and what Bayes' rule would not count does not count here either: weak masses far off
-/// the axis mark arcs that nothing contradicts.
+/// What is certain leaves a doubt. The formula's P is the pignistic probability of its mass, half of what stays unknown
+/// counting for either, so that one half has no weight here either: taken for the mass itself, P would mark arcs far
+/// off the axis more strongly than it clears them.
 float mass(const SonarModel& model, double p) {
-  if (!model.params().literal && !(p > 0.5)) return 0.0f;
-  return static_cast<float>(std::clamp(p, 0.0, 1.0 - double{grid::least_unknown}));
+  const double mass = model.params().literal ? p : 2.0 * p - 1.0;
+  return static_cast<float>(std::clamp(mass, 0.0, 1.0 - double{grid::least_unknown}));
 }
 
 float empty_mass(const SonarModel& model, double r, double alpha) { return mass(model, model.empty(r, alpha)); }

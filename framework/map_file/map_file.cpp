@@ -146,11 +146,13 @@ GridMap load(const std::string& path) {
   return parse(config::load(path), std::filesystem::path(path).parent_path().string());
 }
 
-void save(const GridMap& map, const std::string& path, Mode mode) {
-  const std::filesystem::path picture = std::filesystem::path(path).replace_extension(".png");
+void save(const GridMap& map, const std::string& path, Mode mode, Format format) {
+  const bool png = format == Format::png;
+  const std::filesystem::path picture = std::filesystem::path(path).replace_extension(png ? ".png" : ".pgm");
   std::string bytes;
   try {
-    bytes = to_png(picture_of(map, mode));
+    const Image image = picture_of(map, mode);
+    bytes = png ? to_png(image) : to_pgm(image);
   } catch (const std::invalid_argument& error) {
     throw std::invalid_argument(path + ": " + error.what());
   }

@@ -34,10 +34,12 @@ GridMap parse(const config::Node& file, const std::string& folder);
 /// The same from the file's path.
 GridMap load(const std::string& path);
 
-/// Writes `path` (which ends with .yaml) and beside it the picture of the same name, a PNG; each is replaced as a
-/// whole, the picture first. `trinary` is what map_saver writes: black, white and grey; `raw` keeps every percentage.
-/// Throws std::invalid_argument, with the path, if a file cannot be written or the map has no cells.
-void save(const GridMap& map, const std::string& path, Mode mode);
+enum class Format { png, pgm };
+
+/// Writes `path` (which ends with .yaml) and beside it the picture of the same name; each is replaced as a whole, the
+/// picture first. `trinary` is what map_saver writes: black, white and grey; `raw` keeps every percentage. Throws
+/// std::invalid_argument, with the path, if a file cannot be written or the map has no cells.
+void save(const GridMap& map, const std::string& path, Mode mode, Format format = Format::png);
 
 /// Replaces `path` by a file with these bytes: it is written beside it, made durable (fsync) and renamed, so that a
 /// reader, or whoever comes after a crash, finds the old file or the new one, whole. Throws std::invalid_argument with

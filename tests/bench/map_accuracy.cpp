@@ -174,6 +174,11 @@ void survey(const Place& place, const std::string& sources) {
     survey.print(std::string("sonar, ") + name, occupancy(survey.by_sonar(params, std::nullopt, survey.first_half())));
     survey.print(std::string("sonar, ") + name + ", 25 degrees",
                  occupancy(survey.by_sonar(params, geometry::radians(25.0), survey.first_half())));
+    params.model.max_range = 2.0;
+    survey.print(std::string("sonar, ") + name + ", 2 m",
+                 occupancy(survey.by_sonar(params, std::nullopt, survey.first_half())));
+    survey.print(std::string("sonar, ") + name + ", 2 m, 25 degrees",
+                 occupancy(survey.by_sonar(params, geometry::radians(25.0), survey.first_half())));
   }
   survey.print("laser", occupancy(survey.by_laser({}, survey.first_half())));
 
@@ -200,7 +205,7 @@ int main(int argc, char** argv) {
   say("\nCells of 5 cm, true poses, sonars of a P3-DX with 1 %% noise and 32 rays, laser of a P3-AT with 5 mm noise. "
       "Per cent; "
       "wall error in\nm, mean / worst. \"25 degrees\": smooth walls, met more obliquely than that they give no "
-      "echo.\n\n"
+      "echo. \"2 m\": max_range.\n\n"
       "| place | map | accuracy | within one cell | false occupied | false free | coverage | entropy, bits | wall "
       "error "
       "|\n|---|---|---|---|---|---|---|---|---|\n");

@@ -151,6 +151,18 @@ TEST_F(MapKeeperComponent, LeavesAMapForMapServer) {
   EXPECT_EQ(map.occupancy[2], -1);
 }
 
+TEST_F(MapKeeperComponent, LeavesThePictureInTheFormatThatIsAskedFor) {
+  {
+    ValueMap params = two();
+    params["image"] = "pgm";
+    Harness harness("mapping/keeper", params, folder_);
+    harness.feed("r1/tiles", map_tile({0, 0}, {90, 10}));
+    harness.advance(600ms);
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "subject.pgm"));
+  EXPECT_EQ(map_file::load((folder_ / "subject.yaml").string()).occupancy[0], 100);
+}
+
 TEST_F(MapKeeperComponent, LeavesOutTilesThatDoNotFitAndKeepsTheRest) {
   Harness harness("mapping/keeper", two());
   harness.advance(10ms);  // from here on one tick in each half second

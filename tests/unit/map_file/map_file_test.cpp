@@ -46,6 +46,13 @@ TEST_F(SavedMap, InModeTrinaryComesBackAsOccupiedFreeAndUnknown) {
   EXPECT_EQ(picture.pixels[0].shade, 205);
 }
 
+TEST_F(SavedMap, AsPgmComesBackAsItWas) {
+  save(small(), path("map.yaml"), Mode::raw, Format::pgm);
+  EXPECT_TRUE(read_file(path("map.pgm")).starts_with("P5\n3 2\n255\n"));
+  EXPECT_EQ(load(path("map.yaml")).occupancy, small().occupancy);
+  EXPECT_FALSE(fs::exists(path("map.png")));
+}
+
 TEST_F(SavedMap, ReplacesAnEarlierOneAndLeavesNothingElse) {
   save(small(), path("map.yaml"), Mode::raw);
   GridMap other = small();

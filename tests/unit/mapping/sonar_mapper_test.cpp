@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(All, EveryRule,
 /// The table of the component's page.
 TEST(ReadingsToClear, AreThoseThatThePageStates) {
   const auto stated = [](UpdateRule update, double r) { return readings_to_clear(with(update), r, 0.0); };
-  const int table[4][3] = {{3, 2, 8}, {4, 3, 8}, {6, 4, 8}, {12, 5, 8}};
+  const int table[4][3] = {{3, 3, 8}, {4, 5, 8}, {6, 8, 8}, {12, 18, 8}};
   for (int i = 0; i < 4; ++i) {
     EXPECT_EQ(stated(UpdateRule::bayes, 1.0 + i), table[i][0]);
     EXPECT_EQ(stated(UpdateRule::dempster_shafer, 1.0 + i), table[i][1]);
@@ -148,6 +148,20 @@ TEST(ReadingsToClear, AreThoseThatThePageStates) {
   }
   EXPECT_EQ(readings_to_clear(with(UpdateRule::bayes), 4.5, radians(10.0)), std::numeric_limits<int>::max())
       << "at the far edge the model says nothing";
+}
+
+TEST(SonarMapper, MakesAPlaceAsLikelyAsTheFormulaByEitherRule) {
+  for (const UpdateRule rule : {UpdateRule::bayes, UpdateRule::dempster_shafer}) {
+    SonarMapper mapper(with(rule));
+    mapper.add(here, 2.0, limits);
+    EXPECT_EQ(percent(mapper, 2.0, 0.05), 56) << "0.5 (3/5 + 1) 0.7";
+    EXPECT_EQ(percent(mapper, 1.0, 0.05), 10) << "1 - 0.5 (4/5 + 1)";
+  }
+  SonarMapperParams literal = with(UpdateRule::dempster_shafer);
+  literal.model.literal = true;
+  SonarMapper mapper(literal);
+  mapper.add(here, 2.0, limits);
+  EXPECT_EQ(percent(mapper, 2.0, 0.05), 78) << "a mass of 0.56, and half of the rest";
 }
 
 /// The worked example once more, through cells of sixteen bits.
