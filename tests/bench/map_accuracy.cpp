@@ -100,7 +100,7 @@ class Survey {
                                 std::span<const Pose2> way) const {
     sim::SonarSettings settings;
     settings.incidence_limit = incidence;
-    const sim::Sonars sonars(p3dx_.sonars, settings);
+    sim::Sonars sonars(p3dx_.sonars, settings);
     const sim::RandomSource random(1, "r1");
     mapping::SonarMapper mapper(params);
     std::vector<double> ranges(sonars.size());
