@@ -15,13 +15,13 @@ constexpr double doubt = 1e-9;  // m; more than the rounding of sums of distance
 
 Simulation::Simulation(std::shared_ptr<const World> world, std::vector<RobotSetup> robots, std::uint64_t seed,
                        int threads)
-    : world_(std::move(world)), seed_(seed), workers_(std::make_unique<Workers>(threads)) {
+    : world_(std::move(world)), seed_(seed), workers_(std::make_unique<workers::WorkerPool>(threads)) {
   for (const MovingObstacle& obstacle : world_->moving()) moving_.emplace_back(obstacle);
   for (const MovingBody& body : moving_) bodies_.add(body.obstacle().name, body.obstacle().outline, body.pose());
   robots_.reserve(robots.size());
   for (RobotSetup& setup : robots) add(std::move(setup));
   bodies_.sort();
-  workers_->for_each(robots_.size(), [this](std::size_t i) { robots_[i].measure_first(around(i), now_); });
+  for_each(robots_.size(), [this](std::size_t i) { robots_[i].measure_first(around(i), now_); });
 }
 
 /// Those that are there already are in its way.
@@ -81,7 +81,7 @@ void Simulation::step(Duration dt) {
   drive(dt);
   bodies_.sort();
   const std::span<const std::uint32_t> bodies = bodies_.by_place();
-  workers_->for_each(bodies.size(), [this, bodies, dt](std::size_t i) {
+  for_each(bodies.size(), [this, bodies, dt](std::size_t i) {
     if (bodies[i] < moving_.size()) return;
     const std::size_t robot = bodies[i] - moving_.size();
     robots_[robot].measure(around(robot), now_, now_ + dt);
@@ -105,12 +105,12 @@ void Simulation::move_obstacles(Duration dt) {
 /// The robots drive one after the other. Who stays so far from everybody that it makes no difference when it drives may
 /// do so at once, and beside others.
 void Simulation::drive(Duration dt) {
-  workers_->for_each(robots_.size(), [this, dt](std::size_t i) {
+  for_each(robots_.size(), [this, dt](std::size_t i) {
     const Motion& planned = robots_[i].plan(now_, dt);
     ways_[i] = std::abs(planned.distance);
   });
   const double longest_way = ways_.empty() ? 0.0 : *std::max_element(ways_.begin(), ways_.end());
-  workers_->for_each(robots_.size(), [this, longest_way](std::size_t i) {
+  for_each(robots_.size(), [this, longest_way](std::size_t i) {
     Robot& robot = robots_[i];
     const Body& body = robot.body();
     const double near = body.heeds() + body.length(robot.planned()) + longest_way + doubt;

@@ -7,9 +7,9 @@
 #include <string_view>
 #include <vector>
 
+#include "framework/workers/worker_pool.hpp"
 #include "sim/moving_body.hpp"
 #include "sim/robot.hpp"
-#include "sim/workers.hpp"
 #include "sim/world.hpp"
 
 namespace kervan::sim {
@@ -63,6 +63,12 @@ class Simulation {
  private:
   std::size_t body_of(std::size_t robot) const { return moving_.size() + robot; }
   Surroundings around(std::size_t robot) const { return {*world_, bodies_, body_of(robot)}; }
+  /// Calls work(i) for all i below `count`, shared out among the threads.
+  template <class Work>
+  void for_each(std::size_t count, Work&& work) const {
+    constexpr std::size_t worth_sharing = 16;  // waking somebody takes longer than doing less than this
+    workers_->for_each(count, worth_sharing, work);
+  }
   void add(RobotSetup setup);
   std::size_t place_of(std::string_view name) const;
   void move_obstacles(Duration dt);
@@ -71,7 +77,7 @@ class Simulation {
 
   std::shared_ptr<const World> world_;
   std::uint64_t seed_;
-  std::unique_ptr<Workers> workers_;
+  std::unique_ptr<workers::WorkerPool> workers_;
   std::vector<MovingBody> moving_;
   std::vector<Robot> robots_;
   Bodies bodies_;                   // of the moving obstacles, then of the robots, in their order

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "framework/runtime/crash_context.hpp"
 #include "framework/runtime/operations.hpp"
-#include "framework/runtime/workers.hpp"
+#include "framework/workers/worker_pool.hpp"
 
 namespace kervan::runtime {
 
@@ -20,7 +21,7 @@ constexpr unsigned kLongestLoop = 100;
 
 Lockstep::Lockstep(Container& container, Instant& instant, unsigned threads)
     : container_(container), instant_(instant) {
-  if (threads > 1) workers_ = std::make_unique<WorkerPool>(threads);
+  if (threads > 1) workers_ = std::make_unique<workers::WorkerPool>(static_cast<int>(threads));
 }
 
 Lockstep::~Lockstep() = default;
@@ -68,10 +69,14 @@ Time Lockstep::next_due() const {
 
 void Lockstep::for_each_parallel(const std::vector<ComponentInstance*>& instances,
                                  const std::function<void(ComponentInstance&)>& work) {
-  if (workers_ && instances.size() > 1)
-    workers_->run(instances.size(), [&](std::size_t i) { work(*instances[i]); });
-  else
+  if (!workers_) {
     for (ComponentInstance* instance : instances) work(*instance);
+    return;
+  }
+  workers_->for_each(instances.size(), 2, [&](std::size_t i) {
+    thread_local const HandlerStack handler_stack;
+    work(*instances[i]);
+  });
 }
 
 /// Cycle 0: what was asked of the container, then deadlines and timers.

@@ -14,9 +14,11 @@
 #include "framework/runtime/container.hpp"
 #include "framework/runtime/fences.hpp"
 
-namespace kervan::runtime {
-
+namespace kervan::workers {
 class WorkerPool;
+}
+
+namespace kervan::runtime {
 
 class Lockstep {
  public:
@@ -63,7 +65,7 @@ class Lockstep {
 
   Container& container_;
   Instant& instant_;
-  std::unique_ptr<WorkerPool> workers_;
+  std::unique_ptr<workers::WorkerPool> workers_;
   std::unique_ptr<Fences> fences_;  ///< only if there are other containers
   Time end_ = Time::max();          ///< when the time asked for is over
   Round round_;

@@ -41,6 +41,8 @@ const std::vector<Arrow> arrows = {
      {"framework/component/component.hpp", "framework/component/ports.hpp", "framework/component/sample.hpp"}},
     // Pictures and map_server's files: a library for the simulator's worlds and for maps.
     {"framework/map_file/.*", {"framework/map_file/", "framework/config/", "framework/geometry/"}},
+    // Threads that share out work: a library for lockstep and for the simulator.
+    {"framework/workers/.*", {"framework/workers/"}},
     {"framework/dds/.*", {"framework/dds/", "framework/component/", "framework/geometry/"}},
     // A component's public headers do not show what runs it; its .cpp files hand over to the runtime.
     {"framework/component/.*\\.hpp", {"framework/component/", "framework/geometry/", "framework/dds/"}},
@@ -72,7 +74,9 @@ const std::vector<Arrow> arrows = {
     // Worlds and robot models are configuration files; the simulator itself takes them as plain values.
     {"sim/files/.*",
      {"sim/", "framework/config/", "framework/map_file/", "framework/component/error.hpp", "framework/geometry/"}},
-    {"sim/.*", {"sim/", "framework/geometry/"}, {"sim/files/", "framework/geometry/messages.hpp"}},
+    {"sim/.*",
+     {"sim/", "framework/geometry/", "framework/workers/"},
+     {"sim/files/", "framework/geometry/messages.hpp"}},
 
     // The model knows manifests, not modules, and nothing that runs.
     {"deploy/composition/.*", {own_folder, "framework/component/", "framework/config/", "framework/geometry/"}},

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "framework/workers/worker_pool.hpp"
 #include "sim/simulation.hpp"
-#include "sim/workers.hpp"
 #include "tests/unit/sim/p3dx.hpp"
 
 namespace kervan::sim {
@@ -134,11 +134,11 @@ TEST(Threads, TheCrowdOfTheseTestsDoesMeet) {
 
 TEST(Workers, DoEveryPieceOfWorkOnce) {
   for (const int threads : {1, 2, 4}) {
-    Workers workers(threads);
+    workers::WorkerPool pool(threads);
     for (const std::size_t count : {0u, 1u, 17u, 1000u})
       for (int round = 0; round < 20; ++round) {
         std::vector<std::atomic<int>> done(count);
-        workers.for_each(count, [&](std::size_t i) { ++done[i]; });
+        pool.for_each(count, 2, [&](std::size_t i) { ++done[i]; });
         EXPECT_TRUE(std::all_of(done.begin(), done.end(), [](const auto& times) { return times == 1; }));
       }
   }

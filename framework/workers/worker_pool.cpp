@@ -1,14 +1,13 @@
-#include "sim/workers.hpp"
+#include "framework/workers/worker_pool.hpp"
 
 #include <algorithm>
 
-namespace kervan::sim {
+namespace kervan::workers {
 
 namespace {
-constexpr std::size_t worth_sharing = 16;  // waking somebody takes longer than doing less than this
-constexpr std::size_t portions = 16;       // for each thread, so that none ends much later than the others
+constexpr std::size_t portions = 16;  // for each thread, so that none ends much later than the others
 
-/// Within a step of the simulation the next round comes soon: sooner than a thread that sleeps is awake again.
+/// Often the next round comes soon: sooner than a thread that sleeps is awake again.
 template <class Happened>
 void wait_awake(Happened&& happened) {
   constexpr int turns = 200;  // some 100 us
@@ -16,22 +15,18 @@ void wait_awake(Happened&& happened) {
 }
 }  // namespace
 
-Workers::Workers(int threads) {
+WorkerPool::WorkerPool(int threads) {
   for (int i = 1; i < threads; ++i) others_.emplace_back([this] { serve(); });
 }
 
-Workers::~Workers() {
+WorkerPool::~WorkerPool() {
   end_ = true;
   round_.fetch_add(1, std::memory_order_release);
   round_.notify_all();
   for (std::thread& other : others_) other.join();
 }
 
-void Workers::share(std::size_t count, Call call, void* context) {
-  if (others_.empty() || count < worth_sharing) {
-    for (std::size_t i = 0; i < count; ++i) call(context, i);
-    return;
-  }
+void WorkerPool::share(std::size_t count, Call call, void* context) {
   call_ = call;
   context_ = context;
   count_ = count;
@@ -46,7 +41,7 @@ void Workers::share(std::size_t count, Call call, void* context) {
     at_work_.wait(left, std::memory_order_acquire);
 }
 
-void Workers::take_part() {
+void WorkerPool::take_part() {
   for (;;) {
     const std::size_t first = next_.fetch_add(portion_, std::memory_order_relaxed);
     if (first >= count_) return;
@@ -54,7 +49,7 @@ void Workers::take_part() {
   }
 }
 
-void Workers::serve() {
+void WorkerPool::serve() {
   for (std::uint32_t seen = 0;;) {
     wait_awake([this, seen] { return round_.load(std::memory_order_acquire) != seen; });
     round_.wait(seen, std::memory_order_acquire);
@@ -65,4 +60,4 @@ void Workers::serve() {
   }
 }
 
-}  // namespace kervan::sim
+}  // namespace kervan::workers

@@ -1,4 +1,4 @@
-/// Threads that share out work among them.
+/// Threads that share out work among them: the robots of a simulator, the components of a lockstep run.
 #pragma once
 
 #include <atomic>
@@ -8,21 +8,26 @@
 #include <type_traits>
 #include <vector>
 
-namespace kervan::sim {
+namespace kervan::workers {
 
-class Workers {
+class WorkerPool {
  public:
   /// `threads` in all, at least 1; the one that calls is one of them.
-  explicit Workers(int threads);
-  ~Workers();
-  Workers(const Workers&) = delete;
-  Workers& operator=(const Workers&) = delete;
+  explicit WorkerPool(int threads);
+  ~WorkerPool();
+  WorkerPool(const WorkerPool&) = delete;
+  WorkerPool& operator=(const WorkerPool&) = delete;
 
   /// Calls work(i) once for every i below `count`, on any of the threads and in any order, and returns when all is
-  /// done. `work` must not throw and must not call this.
+  /// done; the calling thread alone does fewer than `worth_sharing` of them. `work` must not throw and must not call
+  /// this.
   template <class Work>
-  void for_each(std::size_t count, Work&& work) {
+  void for_each(std::size_t count, std::size_t worth_sharing, Work&& work) {
     using Type = std::remove_reference_t<Work>;
+    if (others_.empty() || count < worth_sharing) {
+      for (std::size_t i = 0; i < count; ++i) work(i);
+      return;
+    }
     share(
         count, [](void* context, std::size_t i) { (*static_cast<Type*>(context))(i); },
         const_cast<std::remove_const_t<Type>*>(&work));
@@ -47,4 +52,4 @@ class Workers {
   std::vector<std::thread> others_;
 };
 
-}  // namespace kervan::sim
+}  // namespace kervan::workers
