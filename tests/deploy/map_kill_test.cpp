@@ -77,6 +77,22 @@ TEST(MapKill, NeitherTheMappersDeathNorTheKeepersLosesTheMap) {
   expect_nothing_forgotten(run, "mapper", "keeper");
 }
 
+TEST(MapKill, AKeeperThatComesLateGetsTheWholeMapOfAMapperThatLives) {
+  Supervised run(
+      lab_over({{"sim", "[world, report, mission]"}, {"robot", "[r1]"}, {"mapper", "[mapper]"}, {"keeper", "[keeper]"}},
+               {mapper_line, keeper_line}),
+      "sim");
+  ASSERT_TRUE(eventually([&] { return known_on_disk(run, "keeper") > 5000; })) << run.said();
+  const std::size_t before = known_on_disk(run, "keeper");
+  ::kill(run.container("keeper"), SIGKILL);
+  for (const auto& entry : std::filesystem::directory_iterator(run.folder() / "runs"))
+    std::filesystem::remove(entry.path() / "keeper.map");  // it will know nothing
+  run.wait_for("the container keeper is active again");
+  EXPECT_TRUE(eventually([&] { return known_on_disk(run, "keeper") >= before; })) << run.said();
+  run.signal(SIGTERM);
+  run.wait();
+}
+
 /// The shipped composition, its keeper writing more often.
 std::string two_robots() {
   std::string text = text_of(std::filesystem::path(KERVAN_SOURCES) / "deploy/compositions/12_map_two_robots.yaml");
