@@ -29,8 +29,8 @@ class Headings {
   /// The heading that is nearest to `yaw`, at most 0.7 degrees away. |yaw| below 10^15.
   static int nearest(double yaw) { return static_cast<int>(steps(yaw) & (count - 1)); }
 
-  /// (cos yaw, sin yaw) to the fourteenth digit, for yaws of a few turns, in a third of the time: the nearest axis
-  /// turned by the rest, whose series end soon.
+  /// (cos yaw, sin yaw) to the fourteenth digit, for yaws of a few turns (fewer digits for more), in a third of the
+  /// time: the nearest axis turned by the rest, whose series end soon.
   geometry::Vector2 direction(double yaw) const {
     const std::int64_t whole = steps(yaw);
     const geometry::Vector2& axis = axes_[static_cast<std::size_t>(whole & (count - 1))];

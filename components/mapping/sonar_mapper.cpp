@@ -35,6 +35,8 @@ float occupied_mass(const SonarModel& model, double r, double alpha) {
   return model.params().record_above > 0.0 && !(p > model.params().record_above) ? 0.0f : mass(model, p);
 }
 
+constexpr double farthest_yaw = 1e6;  // rad, far within what an integer counts the headings of
+
 /// Rounded, from -1 on.
 std::int16_t millimetres(double metres) {
   return static_cast<std::int16_t>(static_cast<int>(std::clamp(1000.0 * metres, -1.0, 32766.0) + 1.5) - 1);
@@ -58,7 +60,8 @@ SonarMapper::SonarMapper(const SonarMapperParams& params)
 ReadingResult SonarMapper::add(const geometry::Pose2& transducer, double range, const SonarLimits& limits) {
   if (std::isnan(range)) return ReadingResult::not_fired;
   if (range < limits.min_range || range < 0.0) return ReadingResult::refused_range;
-  if (!grid::has_cell(transducer.position()) || !std::isfinite(transducer.yaw)) return ReadingResult::refused_place;
+  if (!grid::has_cell(transducer.position()) || !(std::abs(transducer.yaw) <= farthest_yaw))
+    return ReadingResult::refused_place;
   const bool echo = range < limits.max_range && range < params_.model.max_range;
   Along along{grid::cell_of(transducer.position(), params_.resolution), {}, transducer.yaw, 0.0, 0.0, -1.0};
   along.offset = transducer.position() - grid::center_of(along.tip, params_.resolution);

@@ -39,7 +39,7 @@ enum class ReadingResult {
   no_echo,         ///< in the map: empty up to no_echo_limit
   not_fired,       ///< NaN: the sonar had not its turn, and says nothing
   refused_range,   ///< negative or nearer than the transducer can measure: left out
-  refused_place,   ///< the transducer is nowhere that has a cell
+  refused_place,   ///< the transducer is nowhere that has a cell, or looks into no direction
   refused_memory,  ///< the map would grow beyond its memory: left out
 };
 

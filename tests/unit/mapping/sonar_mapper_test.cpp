@@ -67,7 +67,8 @@ TEST_P(EveryRule, LeavesOutWhatIsNoDistance) {
   for (const double range : {-1.0, -infinite, 0.0, 0.149, -0.0})
     EXPECT_EQ(mapper.add(here, range, limits), ReadingResult::refused_range) << range;
   EXPECT_EQ(mapper.add(here, nan, limits), ReadingResult::not_fired);
-  for (const Pose2& pose : {Pose2{nan, 0, 0}, Pose2{0, infinite, 0}, Pose2{0, 0, nan}, Pose2{1e7, 0, 0}})
+  for (const Pose2& pose :
+       {Pose2{nan, 0, 0}, Pose2{0, infinite, 0}, Pose2{0, 0, nan}, Pose2{1e7, 0, 0}, Pose2{0, 0, -1e300}})
     EXPECT_EQ(mapper.add(pose, 1.0, limits), ReadingResult::refused_place);
   EXPECT_TRUE(mapper.box().empty());
   EXPECT_TRUE(mapper.take_touched().empty());
