@@ -15,6 +15,12 @@ struct SideAvoidDeclaration {
     v(p.distance, "distance",
       {.unit = "m", .min = 0.01, .max = 5.0, .help = "Something nearer beside it is too near.", .live = true});
     v(p.turn_rate, "turn_rate", {.unit = "rad/s", .min = 0.01, .max = 5.0, .help = "Turning rate.", .live = true});
+    v(p.most_turn, "most_turn",
+      {.unit = "rad",
+       .min = 0.01,
+       .max = 6.3,
+       .help = "Turned away so far, it drives straight on until the side is free.",
+       .live = true});
     v(p.speed, "speed", {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Speed meanwhile.", .live = true});
   }
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "components/behavior/situation.hpp"
 
@@ -22,6 +23,10 @@ struct WallFindParams {
 /// Wall finding, paper's table of behaviours: a full turn, noting in each sector the nearest echo of -10..10 degrees;
 /// drive towards the nearest of all; stop 400 mm before it; turn to the left until the wall is beside the robot.
 ///
+/// A cone hears the same thing in many sectors, a region of constant depth; the thing is in the middle of them (J. J.
+/// Leonard, H. F. Durrant-Whyte, Directed Sonar Sensing for Mobile Robot Navigation, 1992). Where the drive has come as
+/// near as that echo was, the wall is there, whether or not it is heard from so near.
+///
 /// The paper turns "until the minimum over -100..-80 degrees is smallest". In cones of ±15 degrees that minimum is the
 /// same over 30 degrees, so the turn ends where the readings before and behind the wheels agree. Where it was carried
 /// off while looking around, by another behaviour, it begins anew. The paper does not say what to do where nothing is
@@ -38,7 +43,15 @@ class WallFind {
   Wish step(const Situation& situation);
 
  private:
+  /// What was ahead in one direction.
+  struct Noted {
+    double yaw;
+    double range;
+  };
+
   void enter(Phase phase, const Situation& situation);
+  /// The nearest echo of the look around, and the direction it came from.
+  std::optional<Noted> nearest() const;
   Wish look(const Situation& situation, const SonarView& view);
   Wish drive(const Situation& situation, const SonarView& view);
   Wish align(const Situation& situation, const SonarView& view);
@@ -47,11 +60,10 @@ class WallFind {
   Phase phase_ = Phase::idle;
   geometry::Vector2 entered_ = geometry::Vector2::Zero();  // where the robot was when the phase began
   TurnedAngle turned_;
-  double noted_ = 0.0;  // rad turned when the last sector was noted
-  double nearest_ = nothing;
-  double bearing_ = 0.0;  // yaw of the nearest echo, then of the way to it
-  double way_ = 0.0;      // m that the drive may take
-  int in_vain_ = 0;       // looks since something was heard
+  std::vector<Noted> noted_;  // of this look around
+  double bearing_ = 0.0;      // yaw of the way to drive
+  double way_ = 0.0;          // m to drive
+  int in_vain_ = 0;           // looks since something was heard
 };
 
 }  // namespace kervan::behavior

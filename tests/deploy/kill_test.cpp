@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdlib>
 #include <deque>
 #include <iostream>
 #include <thread>
@@ -22,11 +21,6 @@ namespace kervan::test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-int number_from(const char* variable, int otherwise) {
-  const char* text = std::getenv(variable);
-  return text ? std::atoi(text) : otherwise;
-}
 
 /// Keeps so many cores busy while it exists.
 class Load {

@@ -6,8 +6,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 
@@ -123,17 +125,28 @@ std::string Supervised::file(const std::string& name) const {
   return {};
 }
 
+std::string split_over(const std::string& name, const std::vector<std::pair<std::string, std::string>>& containers,
+                       const std::vector<std::string>& more) {
+  const std::string whole = text_of(fs::path(KERVAN_SOURCES) / "deploy/compositions" / (name + ".yaml"));
+  // Everything but the head, which Supervised writes, with the arguments as they are.
+  const auto arguments = whole.find("\nargs:"), clock = whole.find("\nclock:"), after = whole.find('\n', clock + 1),
+             mission = std::min(whole.find("\nmission:"), whole.size() - 1);
+  std::string text = whole.substr(arguments + 1, clock - arguments) + whole.substr(after + 1, mission - after);
+  for (const std::string& component : more) text += "  " + component + "\n";
+  text += whole.substr(mission + 1) + "containers:\n";
+  for (const auto& [container, components] : containers)
+    text += "  " + container + ": {components: " + components + "}\n";
+  return text;
+}
+
 std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers,
                      const std::vector<std::string>& more) {
-  const std::string lab = text_of(fs::path(KERVAN_SOURCES) / "deploy/compositions/lab.yaml");
-  // Everything but the head, which Supervised writes, with the arguments as they are.
-  const auto arguments = lab.find("\nargs:"), clock = lab.find("\nclock:"), templates = lab.find("\ntemplates:"),
-             mission = lab.find("\nmission:");
-  std::string text = lab.substr(arguments + 1, clock - arguments) + lab.substr(templates + 1, mission - templates);
-  for (const std::string& component : more) text += "  " + component + "\n";
-  text += lab.substr(mission + 1) + "containers:\n";
-  for (const auto& [name, components] : containers) text += "  " + name + ": {components: " + components + "}\n";
-  return text;
+  return split_over("lab", containers, more);
+}
+
+int number_from(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::atoi(text) : otherwise;
 }
 
 }  // namespace kervan::test

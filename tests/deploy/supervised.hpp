@@ -64,9 +64,16 @@ class Supervised {
   Result result_;
 };
 
-/// The laboratory over these containers: {"sim", "[world]"} and so on. `more` are components beside its own, one line
-/// each.
+/// A shipped composition, less what Supervised writes above it, over these containers: {"sim", "[world]"} and so on.
+/// `more` are components beside its own, one line each.
+std::string split_over(const std::string& name, const std::vector<std::pair<std::string, std::string>>& containers,
+                       const std::vector<std::string>& more = {});
+
+/// The same of the laboratory.
 std::string lab_over(const std::vector<std::pair<std::string, std::string>>& containers,
                      const std::vector<std::string>& more = {});
+
+/// The number that an environment variable holds.
+int number_from(const char* variable, int otherwise);
 
 }  // namespace kervan::test

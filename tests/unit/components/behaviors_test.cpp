@@ -81,7 +81,7 @@ TEST(WallFollowByThePaper, StepsOneDegreeEveryTenthOfASecond) {
 }
 
 TEST(SideAvoid, TurnsFiveDegreesAwayFromWhatIsNearerThan200Millimetres) {
-  const SideAvoid avoid({});
+  SideAvoid avoid({});
   EXPECT_FALSE(avoid.step(hearing({{7, 0.2}, {8, 0.2}, {0, 0.2}, {15, 0.2}})).active);
   const Wish right = avoid.step(hearing({{7, 0.19}}));
   EXPECT_TRUE(right.active);
@@ -90,12 +90,24 @@ TEST(SideAvoid, TurnsFiveDegreesAwayFromWhatIsNearerThan200Millimetres) {
 }
 
 TEST(SideAvoid, DoesNotSwingItsTailIntoTheWall) {
-  const SideAvoid avoid({});
+  SideAvoid avoid({});
   const Wish wish = avoid.step(beside(0.24, 0.18));
   EXPECT_TRUE(wish.active);
   EXPECT_GT(wish.twist.linear, 0.0);
   EXPECT_EQ(wish.twist.angular, 0.0);
   EXPECT_EQ(avoid.step(hearing({{0, 0.18}, {7, 0.18}})).twist.angular, 0.0) << "a passage";
+}
+
+TEST(SideAvoid, TurnsByTenDegreesAtMostUntilTheSideHasBeenFree) {
+  SideAvoid avoid({});
+  EXPECT_LT(avoid.step(hearing({{0, 0.19}})).twist.angular, 0.0);
+  EXPECT_LT(avoid.step(hearing({{0, 0.19}}, 100ms, {0, 0, radians(-9)})).twist.angular, 0.0);
+  const Wish wish = avoid.step(hearing({{0, 0.19}}, 200ms, {0, 0, radians(-11)}));
+  EXPECT_TRUE(wish.active);
+  EXPECT_EQ(wish.twist.angular, 0.0);
+  EXPECT_EQ(wish.twist.linear, 0.1);
+  EXPECT_FALSE(avoid.step(hearing({{0, 0.21}}, 300ms, {0, 0, radians(-11)})).active);
+  EXPECT_LT(avoid.step(hearing({{0, 0.19}}, 400ms, {0, 0, radians(-11)})).twist.angular, 0.0);
 }
 
 TEST(FrontAvoid, TurnsLeftBy90DegreesBeforeWhatIsNearerThan400Millimetres) {
@@ -191,6 +203,42 @@ TEST(WallFind, LooksAroundDrivesToTheNearestWallAndTurnsItToTheSide) {
   EXPECT_TRUE(find.step(hearing({{7, 0.45}, {8, 0.50}}, 5s, {-1.5, 0, radians(-95)})).active) << "not parallel yet";
   EXPECT_FALSE(find.step(hearing({{7, 0.43}, {8, 0.43}}, 6s, {-1.5, 0, radians(-75)})).active);
   EXPECT_EQ(find.phase(), WallFind::Phase::idle);
+}
+
+/// A look around at the origin; `range` tells what is ahead in each direction, in degrees.
+template <class Range>
+void look_around(WallFind& find, Range range) {
+  for (int degrees = 0; degrees <= 361; ++degrees)
+    find.step(hearing({{3, range(degrees % 360)}}, 0s, {0, 0, geometry::wrap_angle(radians(degrees))}));
+}
+
+TEST(WallFind, DrivesTowardsTheMiddleOfTheDirectionsInWhichTheSameThingWasNearest) {
+  // Heard from 300 over 0 to 20 degrees, with noise that makes one at the edge the nearest.
+  WallFind find({});
+  look_around(find, [](int degrees) { return degrees == 15 ? 1.97 : degrees >= 300 || degrees <= 20 ? 2.0 : 3.0; });
+  ASSERT_EQ(find.phase(), WallFind::Phase::drive);
+  const Wish ahead = find.step(hearing({}, 1s, {0, 0, radians(-20)}));
+  EXPECT_EQ(ahead.twist.linear, 0.2);
+  EXPECT_NEAR(ahead.twist.angular, 0.0, radians(5.0)) << "-20 degrees, but for the sectors";
+}
+
+TEST(WallFind, TurnsTheWallToTheSideWhereItMustBeThoughItIsNotHeardAnyMore) {
+  WallFind find({});
+  look_around(find, [](int degrees) { return degrees <= 10 || degrees >= 350 ? 2.0 : nothing; });
+  find.step(hearing({}, 1s, {1.55, 0, 0}));
+  EXPECT_EQ(find.phase(), WallFind::Phase::drive);
+  find.step(hearing({}, 2s, {1.61, 0, 0}));
+  EXPECT_EQ(find.phase(), WallFind::Phase::align) << "2.0 m less the 0.4 to stop before it";
+}
+
+TEST(WallFind, LooksAgainAtOnceWhereTheTurnDidNotBringAWallBesideIt) {
+  WallFind find({});
+  look_around(find, [](int) { return 1.0; });
+  find.step(hearing({{3, 0.39}}));
+  ASSERT_EQ(find.phase(), WallFind::Phase::align);
+  EXPECT_TRUE(find.step(hearing({}, 1s, {0, 0, radians(100)})).active);
+  EXPECT_TRUE(find.step(hearing({}, 2s, {0, 0, radians(131)})).active) << "somebody has to be";
+  EXPECT_EQ(find.phase(), WallFind::Phase::look);
 }
 
 TEST(WallFind, WantsNothingWhileAWallIsWithinAMetreOnTheRight) {
@@ -324,11 +372,14 @@ struct Everybody {
   Bumper bumper{{}};
   StallRecover stall{{}};
 
+  geometry::Twist2 drives;  ///< what the strongest of the last step wants
+
   int active(const Situation& situation) {
     int count = 0;
     for (const Wish& wish : {find.step(situation), follow.step(situation), convex.step(situation), side.step(situation),
                              front.step(situation), bumper.step(situation), stall.step(situation)}) {
       count += wish.active;
+      if (wish.active) drives = wish.twist;
       EXPECT_TRUE(std::isfinite(wish.twist.linear) && std::isfinite(wish.twist.angular));
       EXPECT_TRUE(wish.active || wish.twist == geometry::Twist2{});
       EXPECT_FALSE(wish.why.empty());
@@ -347,6 +398,23 @@ TEST(AllBehaviours, SomeAreActiveWhateverTheSonarsHear) {
     if (i % 50 == 0) everybody = Everybody();
     situation.now += 100ms;
     if (!again(random)) situation.pose = {any(random), any(random), turn(random)};
+    for (SonarReading& reading : situation.ring)
+      if (!again(random)) reading.range = silent(random) ? nothing : any(random);
+    ASSERT_GT(everybody.active(situation), 0) << i;
+  }
+}
+
+TEST(AllBehaviours, SomeAreActiveWhereverTheyDriveTheRobot) {
+  // Echoes come and go while the robot does what it is told, so that each behaviour comes through all it does.
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(0.2, 3.0);
+  std::bernoulli_distribution silent(0.8), again(0.98);
+  Everybody everybody;
+  Situation situation = hearing({});
+  for (int i = 0; i < 20000; ++i) {
+    situation.now += 250ms;
+    const Pose2 step{0.25 * everybody.drives.linear, 0.0, 0.25 * everybody.drives.angular};
+    situation.pose = situation.pose * step;
     for (SonarReading& reading : situation.ring)
       if (!again(random)) reading.range = silent(random) ? nothing : any(random);
     ASSERT_GT(everybody.active(situation), 0) << i;
