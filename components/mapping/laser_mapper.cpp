@@ -22,13 +22,6 @@ constexpr double before_the_end = 0.75;
 /// tan 75 degrees: neighbouring beams that differ more than on a wall met as obliquely as that see two things.
 constexpr double steepest = 3.73;
 
-bool possible(const Scan& scan) {
-  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0 &&
-         std::isfinite(scan.range_min) && scan.range_min >= 0.0 && !std::isnan(scan.range_max) &&
-         scan.range_max > scan.range_min && scan.ranges.size() <= most_beams &&
-         std::abs(scan.angle_increment) * static_cast<double>(scan.ranges.size()) < 2.0 * whole_turn;
-}
-
 /// Nearly always there are two.
 void sort_few(float* begin, float* end) {
   for (float* at = begin + 1; at < end; ++at) {
@@ -40,6 +33,13 @@ void sort_few(float* begin, float* end) {
 }
 
 }  // namespace
+
+bool possible(const Scan& scan) {
+  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0 &&
+         std::isfinite(scan.range_min) && scan.range_min >= 0.0 && !std::isnan(scan.range_max) &&
+         scan.range_max > scan.range_min && scan.ranges.size() <= most_beams &&
+         std::abs(scan.angle_increment) * static_cast<double>(scan.ranges.size()) < 2.0 * whole_turn;
+}
 
 LaserMapper::LaserMapper(const LaserMapperParams& params)
     : params_(params),

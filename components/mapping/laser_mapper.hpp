@@ -29,6 +29,9 @@ struct Scan {
   std::span<const float> ranges;
 };
 
+/// Whether its angles and limits are those of a scan.
+bool possible(const Scan& scan);
+
 enum class ScanResult {
   added,
   refused_scan,    ///< angles or limits that cannot be

@@ -57,6 +57,17 @@ const std::vector<Arrow> arrows = {
     {"components/observe/outline\\.hpp", {own_folder, messages}},
     {"components/mapping/map_(maker|ports)\\.hpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
+    {"components/localization/pose_ports\\.hpp", {own_folder, "framework/kervan.hpp", "framework/geometry/", messages}},
+    {"components/localization/scan_match_params\\.hpp",
+     {own_folder, "framework/component/parameters.hpp", "framework/geometry/"}},
+    // A robot that finds itself in the map it makes puts readings into it as the mappers do.
+    {"components/localization/[^/]+_component\\.cpp",
+     {own_folder, "components/mapping/", "framework/kervan.hpp", "framework/component/", "framework/geometry/",
+      messages},
+     {"components/mapping/map_ports.hpp", "components/mapping/map_maker.hpp"}},
+    {"components/localization/.*",
+     {own_folder, "components/mapping/", "components/grid/", "framework/geometry/", "framework/component/time.hpp"},
+     {"components/mapping/map_ports.hpp", "components/mapping/map_maker.hpp", "framework/geometry/messages.hpp"}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // One shell around seven behaviours, each a declaration in its own component, and one around the planners.
