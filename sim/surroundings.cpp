@@ -69,10 +69,10 @@ class Paths {
   std::array<float, most_rays> x_, y_, dx_, dy_, length_;
 };
 
-/// A body that may stand near others.
-class Stander {
+/// A body that stands among others.
+class Standing {
  public:
-  Stander(const Outline& outline, const Pose2& pose) : outline_(outline), pose_(pose) {}
+  Standing(const Outline& outline, const Pose2& pose) : outline_(outline), pose_(pose) {}
 
   /// No more than its distance to one of `bodies`; quick. May be negative. Beyond `within` it is any number from there
   /// on.
@@ -170,10 +170,10 @@ Room Surroundings::exact_room_among_bodies(const Outline& outline, const Pose2& 
 /// What the bodies leave of the room.
 void Surroundings::take_room(const Outline& outline, const Pose2& pose, Room& room) const {
   if (!bodies_) return;
-  Stander stander(outline, pose);
+  Standing here(outline, pose);
   const auto consider = [&](std::size_t body) {
     if (left_out(body)) return;
-    if (stander.separation(*bodies_, body, room.all.distance + doubt) > room.all.distance + doubt) return;
+    if (here.separation(*bodies_, body, room.all.distance + doubt) > room.all.distance + doubt) return;
     const Clearance found = clearance(*bodies_, body, outline, pose, room.all.distance);
     if (found.distance > room.all.distance) return;
     if (found.distance == room.all.distance && (!room.other || bodies_->name(body) >= *room.other)) return;
@@ -199,10 +199,10 @@ bool Surroundings::still_in_the_way(const Room& room, const Outline& outline, co
 double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose, double within) const {
   double room = infinity;
   if (!bodies_) return room;
-  Stander stander(outline, pose);
+  Standing here(outline, pose);
   const Vector2 extent = Vector2::Constant(within + outline.circumradius() + bodies_->largest_radius() + doubt);
   bodies_->visit_box(pose.position() - extent, pose.position() + extent, [&](std::size_t body) {
-    if (!left_out(body)) room = std::min(room, stander.separation(*bodies_, body, within));
+    if (!left_out(body)) room = std::min(room, here.separation(*bodies_, body, within));
   });
   return room;
 }
