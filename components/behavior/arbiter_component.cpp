@@ -1,5 +1,6 @@
 #include <spdlog/spdlog.h>
 
+#include <optional>
 #include <string>
 
 #include "components/behavior/arbiter.hpp"
@@ -41,7 +42,7 @@ class ArbiterComponent final : public Component {
                                                     "Who drives, and who would like to."};
   Timer tick_{this, params_.period, &ArbiterComponent::on_tick};
   std::string frame_;
-  std::string refused_;  // the behaviour whose last request was
+  std::optional<std::string> refused_;  // the behaviour whose last request was
   std::string driving_;
   Time activated_{};
 
@@ -62,7 +63,7 @@ class ArbiterComponent final : public Component {
     if (!taken)
       refused_ = sample->behaviour;
     else if (refused_ == sample->behaviour)
-      refused_.clear();
+      refused_.reset();
   }
 
   void on_tick(Time now) {
@@ -72,7 +73,7 @@ class ArbiterComponent final : public Component {
     if (decision.behaviour != driving_)
       log().info("{} drives: {}", decision.behaviour.empty() ? "nobody" : decision.behaviour, decision.why);
     driving_ = decision.behaviour;
-    if (!refused_.empty()) return report_degraded("motion_request: refused one of '" + refused_ + "' that cannot be");
+    if (refused_) return report_degraded("motion_request: refused one of '" + *refused_ + "' that cannot be");
     if (!decision.behaviour.empty()) return report_active();
     // At the first tick nobody can have published yet.
     if (now - activated_ >= 2 * params_.period) report_degraded("the robot stands: " + decision.why);

@@ -204,6 +204,31 @@ TEST(Behaviours, WantNothingWithoutFreshSonarsAndOdometry) {
   EXPECT_EQ(harness.reason(), "odom: the pose is not finite");
 }
 
+TEST(Behaviours, WantNothingOnceTheOdometryIsTooOld) {
+  Harness harness("behavior/wall_follow");
+  hear(harness, {{7, 0.4}});
+  for (int i = 0; i < 6; ++i) {
+    harness.feed("sonar", sonar({{7, 0.4}}));
+    harness.advance(100ms);
+  }
+  EXPECT_FALSE(asked(harness).active);
+  EXPECT_EQ(harness.reason(), "odom: no sample for more than 0.50 s");
+}
+
+TEST(Behaviours, TakeRangesBeyondTheLargestAndThoseThatAreNotNumbersForNoEcho) {
+  Harness harness("behavior/front_avoid");
+  auto absurd = sonar({});
+  absurd.readings[2].range = std::numeric_limits<float>::quiet_NaN();
+  absurd.readings[3].range = 1e30F;
+  absurd.readings[4].range = std::numeric_limits<float>::infinity();
+  harness.feed("sonar", absurd);
+  harness.feed("odom", odometry_at({}));
+  harness.advance(100ms);
+  EXPECT_FALSE(asked(harness).active);
+  EXPECT_EQ(asked(harness).why, "the way ahead is free");
+  EXPECT_EQ(harness.state(), ComponentState::active) << "sonars that do not fire and silence are nothing unusual";
+}
+
 TEST(Behaviours, WantNothingOfARingThatDoesNotFit) {
   Harness harness("behavior/wall_follow");
   auto half = sonar({{7, 0.4}});
@@ -213,6 +238,12 @@ TEST(Behaviours, WantNothingOfARingThatDoesNotFit) {
   harness.advance(100ms);
   EXPECT_FALSE(asked(harness).active);
   EXPECT_EQ(harness.reason(), "sonar: 8 readings, but the ring of a Pioneer has 16");
+  auto turned = sonar({{7, 0.4}});
+  turned.readings[5].yaw = static_cast<float>(radians(-50.0));
+  harness.feed("sonar", turned);
+  harness.advance(100ms);
+  EXPECT_FALSE(asked(harness).active);
+  EXPECT_EQ(harness.reason(), "sonar: transducer 5 does not look to -30 degrees, as that of a Pioneer does");
 }
 
 TEST(Behaviours, SayThatTheyLeaveNegativeRangesOut) {
@@ -330,6 +361,21 @@ TEST(ArbiterComponent, RefusesWhatIsNotFiniteAndNamesWhoseItWas) {
   harness.advance(100ms);
   EXPECT_EQ(speed(harness), 0.2);
   EXPECT_EQ(harness.reason(), "motion_request: refused one of 'mad' that cannot be");
+}
+
+TEST(ArbiterComponent, RefusesWhatIsValidForNoTimeAndWhatHasNoName) {
+  Harness harness("behavior/arbiter");
+  auto stillborn = request("follow", 20, 0.2);
+  stillborn.valid_for.nanosec = 0;
+  harness.feed("motion_request", stillborn);
+  harness.advance(100ms);
+  EXPECT_EQ(speed(harness), 0.0);
+  EXPECT_EQ(harness.reason(), "motion_request: refused one of 'follow' that cannot be");
+  Harness nameless("behavior/arbiter");
+  nameless.feed("motion_request", request("", 20, 0.2));
+  nameless.advance(100ms);
+  EXPECT_EQ(speed(nameless), 0.0);
+  EXPECT_EQ(nameless.reason(), "motion_request: refused one of '' that cannot be");
 }
 
 TEST(ArbiterComponent, CommandsZeroUnderOwnershipWhileTheBehavioursCommandByThemselves) {
