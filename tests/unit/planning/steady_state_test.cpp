@@ -1,30 +1,9 @@
 // A planner that knows its map allocates nothing.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "components/planning/grid_planner.hpp"
 #include "tests/planning/random_maps.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-// The whole program's.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
+#include "tests/unit/allocations.hpp"
 
 namespace kervan::planning {
 namespace {
@@ -50,9 +29,9 @@ TEST(SteadyState, APlanAllocatesNothing) {
       };
       Plan plan;
       plan_all(plan);
-      const std::size_t before = allocations;
+      const std::size_t before = test::allocations();
       const int found = plan_all(plan);
-      EXPECT_EQ(allocations - before, 0u);
+      EXPECT_EQ(test::allocations() - before, 0u);
       EXPECT_GT(found, 50);
     }
 }

@@ -1,30 +1,9 @@
 // A step allocates nothing, whatever happens in it.
 #include <gtest/gtest.h>
 
-#include <atomic>
-#include <cstdlib>
-#include <new>
-
 #include "sim/simulation.hpp"
+#include "tests/unit/allocations.hpp"
 #include "tests/unit/sim/p3dx.hpp"
-
-namespace {
-std::atomic<std::size_t> allocations{0};
-
-void* counted(std::size_t size) {
-  ++allocations;
-  if (void* memory = std::malloc(size == 0 ? 1 : size)) return memory;
-  throw std::bad_alloc();
-}
-}  // namespace
-
-// The whole program's; the simulator uses no others.
-void* operator new(std::size_t size) { return counted(size); }
-void* operator new[](std::size_t size) { return counted(size); }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete[](void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace kervan::sim {
 namespace {
@@ -47,9 +26,9 @@ TEST(SteadyState, AStepAllocatesNothing) {
       }
     };
     run(1);
-    const std::size_t before = allocations;
+    const std::size_t before = test::allocations();
     run(300);
-    EXPECT_EQ(allocations - before, 0u) << threads << " threads";
+    EXPECT_EQ(test::allocations() - before, 0u) << threads << " threads";
     std::uint64_t contacts = 0;
     for (const Robot& robot : simulation.robots()) contacts += robot.body().contacts();
     EXPECT_GT(contacts, 10u) << "contacts were among the steps";
