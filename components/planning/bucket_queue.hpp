@@ -17,11 +17,18 @@ class BucketQueue {
  public:
   struct Entry {
     std::uint32_t cell;
-    std::uint32_t g;  ///< its lowest 32 bits: of another label than the cell's present one they differ
-    std::uint16_t x;
-    std::uint16_t y;
+    std::uint32_t g;      ///< its lowest 32 bits: of another label than the cell's present one they differ
+    std::uint32_t place;  ///< x and y, as place_of()
     std::uint32_t next;
+
+    int x() const { return static_cast<int>(place & 0xffffu); }
+    int y() const { return static_cast<int>(place >> 16); }
   };
+
+  /// A step to a neighbour is one addition of place_of(dx, dy).
+  static constexpr std::uint32_t place_of(int x, int y) {
+    return (static_cast<std::uint32_t>(y) << 16) + static_cast<std::uint32_t>(x);
+  }
 
   /// Empties the queue. `width`: of a bucket, as a power of two. `spread`: f of all entries at a time differ by less.
   void begin(std::uint64_t first_f, unsigned width, std::uint64_t spread) {
@@ -37,24 +44,26 @@ class BucketQueue {
     free_ = nothing;
   }
 
+  /// True if what is pushed with this f would be the next one out: it may as well be kept in hand.
+  bool next_out(std::uint64_t f) const { return f >> width_ == now_; }
+
   /// Makes room for as many entries at a time; more cost an allocation.
   void reserve(std::size_t entries) {
     if (entries_.size() < entries) entries_.resize(entries);
   }
 
-  void push(std::uint64_t f, std::uint32_t cell, std::uint64_t g, int x, int y) {
-    std::uint32_t place = free_;
-    if (place != nothing) {
-      free_ = entries_[place].next;
+  void push(std::uint64_t f, std::uint32_t cell, std::uint64_t g, std::uint32_t place) {
+    std::uint32_t entry = free_;
+    if (entry != nothing) {
+      free_ = entries_[entry].next;
     } else {
-      place = static_cast<std::uint32_t>(used_++);
+      entry = static_cast<std::uint32_t>(used_++);
       if (used_ > entries_.size()) entries_.resize(2 * used_);
     }
     const std::uint64_t bucket = f >> width_;
     std::uint32_t& head = heads_[bucket & (heads_.size() - 1)];
-    entries_[place] = {cell, static_cast<std::uint32_t>(g), static_cast<std::uint16_t>(x),
-                       static_cast<std::uint16_t>(y), head};
-    head = place;
+    entries_[entry] = {cell, static_cast<std::uint32_t>(g), place, head};
+    head = entry;
     last_ = std::max(last_, bucket);
     ++size_;
   }
@@ -66,11 +75,11 @@ class BucketQueue {
     while (heads_[now_ & mask] == nothing) ++now_;
     if (now_ > limit >> width_) return false;
     std::uint32_t& head = heads_[now_ & mask];
-    const std::uint32_t place = head;
-    entry = entries_[place];
+    const std::uint32_t first = head;
+    entry = entries_[first];
     head = entry.next;
-    entries_[place].next = free_;
-    free_ = place;
+    entries_[first].next = free_;
+    free_ = first;
     --size_;
     return true;
   }

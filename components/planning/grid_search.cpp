@@ -53,11 +53,13 @@ constexpr unsigned step_buckets = 13;  // 2^13: a sixth of a straight move
 
 const std::uint8_t* canonical_moves() { return canonical_table.data(); }
 
-std::uint64_t GridSearch::to_goal(int x, int y) const {
-  const auto dx = static_cast<std::uint32_t>(std::abs(x - goal_.x)),
-             dy = static_cast<std::uint32_t>(std::abs(y - goal_.y));
-  return Costmap::lightest *
-         (straight_cost * std::max(dx, dy) + (diagonal_cost - straight_cost) * std::uint64_t{std::min(dx, dy)});
+std::uint64_t GridSearch::to_goal(std::uint32_t place) const {
+  constexpr std::uint32_t straight = straight_cost * Costmap::lightest,
+                          slanting = (diagonal_cost - straight_cost) * Costmap::lightest;
+  static_assert((std::uint64_t{straight} + slanting) * Costmap::widest < (std::uint64_t{1} << 32));
+  const auto dx = static_cast<std::uint32_t>(std::abs(static_cast<int>(place & 0xffffu) - goal_.x)),
+             dy = static_cast<std::uint32_t>(std::abs(static_cast<int>(place >> 16) - goal_.y));
+  return straight * std::max(dx, dy) + slanting * std::min(dx, dy);
 }
 
 void GridSearch::begin(const Costmap& map, SearchRule rule) {
@@ -87,17 +89,23 @@ template <bool canonical>
 Reached GridSearch::walk(const Costmap& map, std::size_t most_expanded) {
   const std::uint16_t* const infos = map.infos();
   const std::uint32_t goal = map.index(goal_.x, goal_.y), first = map.index(start_.x, start_.y);
-  std::array<std::uint32_t, directions> offsets;
-  for (unsigned d = 0; d < directions; ++d)
+  std::array<std::uint32_t, directions> offsets, steps;
+  for (unsigned d = 0; d < directions; ++d) {
     offsets[d] = static_cast<std::uint32_t>(step_x[d] + step_y[d] * static_cast<int>(map.stride()));
+    steps[d] = BucketQueue::place_of(step_x[d], step_y[d]);
+  }
   constexpr std::array<std::uint64_t, 2> costs = {straight_cost, diagonal_cost};
 
   labels_[first] = label(0, from_nowhere);
-  const std::uint64_t f = to_goal(start_.x, start_.y);
+  const std::uint32_t place = BucketQueue::place_of(start_.x, start_.y);
+  const std::uint64_t f = to_goal(place);
   open_.begin(f, step_buckets, widest_step);
-  open_.push(f, first, 0, start_.x, start_.y);
-  BucketQueue::Entry entry;
-  while (open_.pop(entry, goal_cost_)) {
+  open_.push(f, first, 0, place);
+  BucketQueue::Entry entry, in_hand{};
+  bool held = false;
+  while (held || open_.pop(entry, goal_cost_)) {
+    if (held) entry = in_hand;
+    held = false;
     const Label here = labels_[entry.cell];
     const std::uint64_t g = cost_of(here);
     if (static_cast<std::uint32_t>(g) != entry.g) continue;  // a cheaper way was found after it had been queued
@@ -105,7 +113,7 @@ Reached GridSearch::walk(const Costmap& map, std::size_t most_expanded) {
       goal_cost_ = g;
       continue;
     }
-    if (goal_cost_ != unknown_cost && g + to_goal(entry.x, entry.y) >= goal_cost_) continue;
+    if (goal_cost_ != unknown_cost && g + to_goal(entry.place) >= goal_cost_) continue;
     if (++expanded_ > most_expanded && most_expanded != 0) return Reached::gave_up;
     const unsigned info = infos[entry.cell];
     const MoveTable& table = canonical && (info & Costmap::flat) != 0 ? canonical_table : onward_table;
@@ -117,8 +125,14 @@ Reached GridSearch::walk(const Costmap& map, std::size_t most_expanded) {
       const Label better = label(cost, d);
       if ((better | direction_bits) >= labels_[next]) continue;
       labels_[next] = better;
-      const int x = entry.x + step_x[d], y = entry.y + step_y[d];
-      open_.push(cost + to_goal(x, y), next, cost, x, y);
+      const std::uint32_t place_there = entry.place + steps[d];
+      const std::uint64_t f_there = cost + to_goal(place_there);
+      if (!held && open_.next_out(f_there)) {
+        in_hand = {next, static_cast<std::uint32_t>(cost), place_there, 0};
+        held = true;
+      } else {
+        open_.push(f_there, next, cost, place_there);
+      }
     }
   }
   if (goal_cost_ == unknown_cost) return Reached::no_path;

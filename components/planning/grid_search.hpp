@@ -70,7 +70,7 @@ class GridSearch {
   static unsigned direction_of(Label label) { return static_cast<unsigned>(label & direction_bits); }
   Label label(std::uint64_t cost, unsigned direction) const { return age_ | (cost << cost_shift) | direction; }
 
-  std::uint64_t to_goal(int x, int y) const;
+  std::uint64_t to_goal(std::uint32_t place) const;
   void begin(const Costmap& map, SearchRule rule);
   template <bool canonical>
   Reached walk(const Costmap& map, std::size_t most_expanded);

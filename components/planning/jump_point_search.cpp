@@ -55,7 +55,8 @@ void GridSearch::reach(std::uint32_t parent, std::uint32_t cell, int x, int y, s
   if ((better | direction_bits) >= labels_[cell]) return;
   labels_[cell] = better;
   parents_[cell] = parent;
-  open_.push(cost + to_goal(x, y), cell, cost, x, y);
+  const std::uint32_t place = BucketQueue::place_of(x, y);
+  open_.push(cost + to_goal(place), cell, cost, place);
 }
 
 /// From (x, y), which was reached from `from` at `cost`, on in a straight line: to the goal, or to where it stops.
@@ -79,7 +80,7 @@ void GridSearch::jump_straight(const Costmap& map, const BucketQueue::Entry& fro
 /// A way turns off a diagonal only into one of its straight parts: where it does is no jump point of its own.
 void GridSearch::jump_diagonally(const Costmap& map, const BucketQueue::Entry& from, unsigned direction,
                                  std::uint64_t cost) {
-  int x = from.x, y = from.y;
+  int x = from.x(), y = from.y();
   std::uint32_t cell = from.cell;
   const auto offset =
       static_cast<std::uint32_t>(step_x[direction] + step_y[direction] * static_cast<int>(map.stride()));
@@ -99,10 +100,11 @@ Reached GridSearch::jump(const Costmap& map, std::size_t most_expanded) {
   const std::uint32_t goal = map.index(goal_.x, goal_.y), first = map.index(start_.x, start_.y);
   labels_[first] = label(0, from_nowhere);
   parents_[first] = first;
-  const std::uint64_t f = to_goal(start_.x, start_.y);
+  const std::uint32_t place = BucketQueue::place_of(start_.x, start_.y);
+  const std::uint64_t f = to_goal(place);
   // A jump is a diagonal and a straight line; f grows by at most twice its cost.
   open_.begin(f, jump_buckets, 2 * diagonal * static_cast<std::uint64_t>(map.columns() + map.rows()));
-  open_.push(f, first, 0, start_.x, start_.y);
+  open_.push(f, first, 0, place);
   const std::uint8_t* const table = canonical_moves();
   BucketQueue::Entry entry;
   while (open_.pop(entry, goal_cost_)) {
@@ -113,13 +115,13 @@ Reached GridSearch::jump(const Costmap& map, std::size_t most_expanded) {
       goal_cost_ = g;
       continue;
     }
-    if (goal_cost_ != unknown_cost && g + to_goal(entry.x, entry.y) >= goal_cost_) continue;
+    if (goal_cost_ != unknown_cost && g + to_goal(entry.place) >= goal_cost_) continue;
     if (++expanded_ > most_expanded && most_expanded != 0) return Reached::gave_up;
     unsigned moves = table[direction_of(here) * 256 + (map.infos()[entry.cell] & 0xffu)];
     for (; moves != 0; moves &= moves - 1) {
       const auto d = static_cast<unsigned>(std::countr_zero(moves));
       if (d % 2 == 0)
-        jump_straight(map, entry, d, g, entry.x, entry.y);
+        jump_straight(map, entry, d, g, entry.x(), entry.y());
       else
         jump_diagonally(map, entry, d, g);
     }
