@@ -64,6 +64,8 @@ Bounds bounds_of(const MapDrawing& drawing, const grid::Picture& map) {
   }
   for (const auto& circle : drawing.world.circles) bounds.add(circle.center, circle.radius);
   for (const auto& polygon : drawing.world.polygons) bounds.add(polygon);
+  for (const auto& mover : drawing.movers)
+    for (const auto& place : mover.places) bounds.add(place);
   bounds.add(drawing.nodes);
   for (const auto& robot : drawing.robots) {
     bounds.add(robot.route);
@@ -100,6 +102,12 @@ void draw_truth_of_map(WorldLayer& layer, const DrawnWorld& world) {
   for (const auto& polygon : world.polygons) layer.polygon(polygon, "none", truth_colour, 1.4);
   for (const auto& circle : world.circles) layer.circle(circle.center, circle.radius, "none", truth_colour, 1.4);
   for (const auto& [a, b] : world.walls) layer.line({a, b}, truth_colour, 1.4);
+}
+
+void draw_mover(WorldLayer& layer, const DrawnMover& mover, double tolerance) {
+  layer.line(simplified(mover.way, tolerance), solid_colour, 1.6, layer.dashes(6.0, 4.0));
+  for (std::size_t i = 0; i < mover.places.size(); ++i)
+    layer.polygon(mover.places[i], i + 1 == mover.places.size() ? solid_colour : "none", solid_colour, 1.5);
 }
 
 void draw_goal(WorldLayer& layer, const Vector2& at) {
@@ -239,10 +247,12 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const grid::Picture& ma
   else
     draw_world(layer, drawing.world);
 
+  const double tolerance = px / 3.0;  // a third of a pixel
+  for (const auto& mover : drawing.movers) draw_mover(layer, mover, tolerance);
+
   for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
     if (!on_a_route(drawing, drawing.nodes[i])) draw_node(layer, drawing.nodes[i], i);
 
-  const double tolerance = px / 3.0;  // a third of a pixel
   for (std::size_t i = 0; i < drawing.robots.size(); ++i) {
     const auto& robot = drawing.robots[i];
     draw_driven(layer, robot, colour_of(i), tolerance);
@@ -414,6 +424,11 @@ double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
            l.veil(cone(at, 0.5, 26.0), c);
            draw_arrowhead(l, at, c);
          }});
+  if (!drawing.movers.empty())
+    entries.push_back({"moving obstacle, at the end filled", [](WorldLayer& l, const Polyline& p, const char*) {
+                         const Vector2 r(4.0, 4.0), s(4.0, -4.0);
+                         draw_mover(l, {p, {{p[1] - r, p[1] + s, p[1] + r, p[1] - s}}}, 0.0);
+                       }});
   if (drawing.map) {
     entries.push_back(
         {"the map: free", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#ffffff"); }});

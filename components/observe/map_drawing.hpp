@@ -26,6 +26,12 @@ struct DrawnWorld {
   std::vector<Polyline> polygons;  ///< solid; the last corner joins the first
 };
 
+/// An obstacle that has moved.
+struct DrawnMover {
+  Polyline way;                  ///< of its middle
+  std::vector<Polyline> places;  ///< its outline at some times, in their order; the last one is drawn solid
+};
+
 /// A part of a driven path that has a colour of its own: that of the behaviour in charge.
 struct DrawnStretch {
   std::string behaviour;  ///< empty: nobody
@@ -54,6 +60,7 @@ struct MapDrawing {
   std::string result;    ///< "success", "failed", "aborted", or empty; shown in its colour beside the title
   std::string subtitle;  ///< one line under the title
   DrawnWorld world;
+  std::vector<DrawnMover> movers;
   std::optional<grid::Occupancy> map;  ///< that was made, drawn below everything else; the world is then outlined only
   Polyline
       nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, those of up to three robots' routes are

@@ -227,11 +227,14 @@ class MapReportComponent final : public Component {
   const MapReportParams& params_ = parameters<MapReportParams>();
   std::deque<Subject> robots_ = subjects();
   Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), "True shape of the world."};
+  Input<kervan_msgs::msg::Outline> moving_{this, "moving", qos::state.optional(), "Where the moving obstacles are."};
   Input<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched.optional(), "How the mission ended."};
   Input<kervan_msgs::msg::MapTile> tiles_{this, "tiles", qos::latched.optional(), "The map that is made, to be drawn."};
   std::optional<Input<tf2_msgs::msg::TFMessage>> tf_ = frames();
   Timer tick_{this, params_.period, &MapReportComponent::on_tick};
   std::ofstream table_;
+  std::vector<DrawnMover> movers_;
+  std::int64_t placed_ = 0;             // their places are due after so many snapshots
   std::optional<grid::Occupancy> map_;  // with the cells of the first tile
   std::uint64_t refused_tiles_ = 0;
   Time started_{};
@@ -271,7 +274,36 @@ class MapReportComponent final : public Component {
         for (const auto& frame : message->transforms)
           for (auto& robot : robots_) robot.take_frame(frame);
     take_tiles();
+    take_movers(now);
     for (auto& robot : robots_) robot.look(started_, now, table_);
+  }
+
+  /// Places are kept of the start and of the times of the snapshots.
+  void take_movers(Time now) {
+    const auto* moving = moving_.latest();
+    if (!moving) return;
+    const bool due =
+        placed_ == 0 || (params_.snapshots > Duration::zero() && now - started_ >= placed_ * params_.snapshots);
+    if (due) placed_ = params_.snapshots > Duration::zero() ? (now - started_) / params_.snapshots + 1 : 1;
+    const DrawnWorld world = drawn_world(*moving);
+    movers_.resize(world.polygons.size());
+    for (std::size_t i = 0; i < movers_.size(); ++i) {
+      const Polyline& corners = world.polygons[i];
+      if (corners.empty()) continue;
+      geometry::Vector2 middle = geometry::Vector2::Zero();
+      for (const auto& corner : corners) middle += corner / static_cast<double>(corners.size());
+      movers_[i].way.push_back(middle);
+      if (due) movers_[i].places.push_back(corners);
+    }
+  }
+
+  /// Those of now are the last.
+  void place_movers() {
+    const auto* moving = moving_.latest();
+    if (!moving) return;
+    const DrawnWorld world = drawn_world(*moving);
+    for (std::size_t i = 0; i < movers_.size() && i < world.polygons.size(); ++i)
+      movers_[i].places.push_back(world.polygons[i]);
   }
 
   void take_tiles() {
@@ -298,6 +330,8 @@ class MapReportComponent final : public Component {
     drawing.title = params_.title;
     drawing.nodes = params_.nodes;
     if (const auto* world = world_.latest()) drawing.world = drawn_world(*world);
+    place_movers();
+    drawing.movers = movers_;
     const auto* result = result_.latest();
     drawing.result = !result                                             ? "aborted"
                      : result->result == MissionOutcome::MISSION_SUCCESS ? "success"

@@ -34,6 +34,7 @@ class Script final : public Component {
   Output<sensor_msgs::msg::LaserScan> scan_{this, "r1/scan", qos::sensor, "Laser."};
   Output<tf2_msgs::msg::TFMessage> tf_{this, "/tf", qos::event, "Where the laser is mounted."};
   Output<kervan_msgs::msg::Outline> world_{this, "world", qos::latched, "World."};
+  Output<kervan_msgs::msg::Outline> moving_{this, "moving", qos::state, "A box that drives along."};
   Output<kervan_msgs::msg::ArbitrationState> arbitration_{this, "r1/arbitration", qos::event, "Who drives."};
   Output<kervan_msgs::msg::MissionResult> result_{this, "result", qos::latched, "Result."};
   Timer tick_{this, 50ms, &Script::on_tick};
@@ -54,6 +55,11 @@ class Script final : public Component {
     auto truth = odometry_at({x, 0.0, 0.0}, {1.0, 0.0});
     truth.header.stamp = geometry::to_message(now);
     truth_.publish(truth);
+    kervan_msgs::msg::Outline moving;
+    moving.polygons.resize(1);
+    for (const auto& [dx, dy] : {std::pair{0.0f, 0.0f}, {0.25f, 0.0f}, {0.25f, 0.25f}, {0.0f, 0.25f}})
+      moving.polygons[0].corners.push_back({static_cast<float>(x) + 2.0f + dx, 2.5f + dy});
+    moving_.publish(moving);
     kervan_msgs::msg::ArbitrationState state;
     state.behaviour = x < 0.5 ? "wall_follow" : "front_avoid";
     state.priority = x < 0.5 ? 20 : 50;
@@ -132,6 +138,24 @@ void run(const std::filesystem::path& folder, Duration length, double snapshots 
 }
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(MapReportComponent, DrawsTheWayOfAMovingObstacleAndItsPlacesAtTheTimesOfTheSnapshots) {
+  // Those of before the end are not filled.
+  const auto before_the_end = [](const std::string& svg) {
+    const std::string outline = " \" fill=\"none\" stroke=\"#9aa5b1\"";
+    int count = 0;
+    for (auto at = svg.find(outline); at != std::string::npos; at = svg.find(outline, at + 1)) ++count;
+    return count;
+  };
+  const TemporaryFolder folder;
+  run(folder.path, 3s);
+  const std::string svg = content_of(folder.path / "map.svg");
+  EXPECT_TRUE(has(svg, "moving obstacle"));
+  EXPECT_TRUE(has(svg, ",-2.6250 L3.1250,-2.6250")) << "the way of its middle";
+  EXPECT_EQ(before_the_end(svg), 1) << "at the start";
+  run(folder.path, 2500ms, 1.0);
+  EXPECT_EQ(before_the_end(content_of(folder.path / "map.svg")), 3) << "after 0, 1 and 2 s";
+}
 
 TEST(MapReportComponent, WritesTheDrivenPathTenTimesASecond) {
   const TemporaryFolder folder;
