@@ -10,7 +10,7 @@ constexpr std::size_t portions = 16;  // for each thread, so that none ends much
 /// Often the next round comes soon: sooner than a thread that sleeps is awake again.
 template <class Happened>
 void wait_awake(Happened&& happened) {
-  constexpr int turns = 200;  // some 100 us
+  constexpr int turns = 400;  // some 200 us
   for (int i = 0; i < turns && !happened(); ++i) std::this_thread::yield();
 }
 }  // namespace
