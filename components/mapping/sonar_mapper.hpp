@@ -57,6 +57,9 @@ class SonarMapper {
   double resolution() const { return params_.resolution; }
   grid::CellBox box() const;
 
+  /// The certainty values themselves; null unless the rule is HIMM.
+  const grid::Grid<grid::Certainty>* certainties() const { return std::get_if<grid::Grid<grid::Certainty>>(&cells_); }
+
   /// Tiles whose cells were told something since the last call.
   std::vector<grid::Cell> take_touched();
 

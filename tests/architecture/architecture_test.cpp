@@ -68,10 +68,15 @@ const std::vector<Arrow> arrows = {
     {"components/localization/.*",
      {own_folder, "components/mapping/", "components/grid/", "framework/geometry/", "framework/component/time.hpp"},
      {"components/mapping/map_ports.hpp", "components/mapping/map_maker.hpp", "framework/geometry/messages.hpp"}},
+    // The certainty grid that repels a robot is filled as the mappers fill theirs.
+    {"components/control/vff_component\\.cpp",
+     {own_folder, "components/mapping/sonar_mapper.hpp", "framework/kervan.hpp", "framework/component/",
+      "framework/geometry/", messages}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
-    // One shell around seven behaviours, each a declaration in its own component, and one around the planners.
-    {"components/(behavior/behaviour|planning/planner)_shell\\.hpp",
+    // One shell around seven behaviours, each a declaration in its own component; one around the planners, and one
+    // around the controllers.
+    {"components/(behavior/behaviour|planning/planner|control/controller)_shell\\.hpp",
      {own_folder, "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // time.hpp is two aliases of std::chrono; an algorithm that takes a time takes it as everybody else does.
     {"components/.*",

@@ -1,0 +1,153 @@
+#include "components/control/vff.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kervan::control {
+namespace {
+
+using geometry::Vector2;
+
+constexpr int middle = window_side / 2;
+
+/// What a cell of certainty 1 pushes with at Fcr = 1 and cells of 1 m.
+struct UnitForces {
+  std::array<float, window_cells> x{}, y{};
+};
+
+UnitForces made_unit_forces() {
+  UnitForces forces;
+  for (int row = 0; row < window_side; ++row)
+    for (int column = 0; column < window_side; ++column) {
+      const Vector2 away(middle - column, middle - row);
+      const double d = away.norm();
+      if (d == 0.0) continue;
+      const auto i = static_cast<std::size_t>(row * window_side + column);
+      forces.x[i] = static_cast<float>(away.x() / (d * d * d));
+      forces.y[i] = static_cast<float>(away.y() / (d * d * d));
+    }
+  return forces;
+}
+
+const UnitForces unit_forces = made_unit_forces();
+
+/// A bit that no certainty has shows in the union of all.
+std::uint8_t union_of(const std::array<std::uint8_t, window_cells>& cells) {
+  std::uint8_t bits = 0;
+  for (const std::uint8_t cell : cells) bits = static_cast<std::uint8_t>(bits | cell);
+  return bits;
+}
+static_assert((grid::most_certain & (grid::most_certain + 1)) == 0, "all bits below the highest one are used");
+
+VffFault fault_of(const geometry::Pose2& robot, double speed, const Vector2& target, const CertaintyWindow& window) {
+  if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return VffFault::pose;
+  if (!std::isfinite(speed)) return VffFault::speed;
+  if (!target.allFinite()) return VffFault::target;
+  if (!(window.resolution > 0.0) || !std::isfinite(window.resolution)) return VffFault::resolution;
+  const Vector2 off = (robot.position() - window.origin) / window.resolution - Vector2::Constant(middle + 0.5);
+  if (!(off.cwiseAbs().maxCoeff() <= 0.5 + 1e-6)) return VffFault::place;  // also NaN
+  if (union_of(window.cells) > grid::most_certain) return VffFault::certainty;
+  return VffFault::none;
+}
+
+}  // namespace
+
+std::string_view to_text(VffFault fault) {
+  switch (fault) {
+    case VffFault::none: return "";
+    case VffFault::pose: return "the pose is not finite";
+    case VffFault::speed: return "the speed is not finite";
+    case VffFault::target: return "the target is not finite";
+    case VffFault::resolution: return "the cells of the window have no size";
+    case VffFault::place: return "the robot is not in the middle of the window";
+    case VffFault::certainty: return "a cell of the window is more certain than 15";
+  }
+  return "";
+}
+
+void cut_window(const grid::Grid<grid::Certainty>& cells, const Vector2& robot, CertaintyWindow& window) {
+  const grid::Cell center = grid::cell_of(robot, cells.resolution());
+  const grid::CellBox box{center.x - middle, center.y - middle, window_side, window_side};
+  window.resolution = cells.resolution();
+  window.origin = {box.x * window.resolution, box.y * window.resolution};
+  const int left = std::max(box.x, cells.box().x);
+  const int right = std::min(box.x + box.columns, cells.box().x + cells.box().columns);
+  std::uint8_t* row = window.cells.data();
+  for (int y = box.y; y < box.y + box.rows; ++y, row += window_side) {
+    std::fill_n(row, window_side, std::uint8_t{0});
+    if (left >= right || !cells.box().contains(grid::Cell{left, y})) continue;
+    const grid::Certainty* from = cells.place({left, y});
+    std::transform(from, from + (right - left), row + (left - box.x),
+                   [](const grid::Certainty& cell) { return static_cast<std::uint8_t>(cell.value()); });
+  }
+}
+
+Vector2 repulsion_of(const CertaintyWindow& window, double f_cr) {
+  // Eight sums side by side, whose order does not depend on what the compiler makes of it.
+  constexpr std::size_t lanes = 8;
+  std::array<float, lanes> x{}, y{};
+  std::size_t i = 0;
+  for (; i + lanes <= window_cells; i += lanes)
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+      const auto certainty = static_cast<float>(window.cells[i + lane]);
+      x[lane] += certainty * unit_forces.x[i + lane];
+      y[lane] += certainty * unit_forces.y[i + lane];
+    }
+  for (; i < window_cells; ++i) {
+    x[0] += static_cast<float>(window.cells[i]) * unit_forces.x[i];
+    y[0] += static_cast<float>(window.cells[i]) * unit_forces.y[i];
+  }
+  Vector2 sum = Vector2::Zero();
+  for (std::size_t lane = 0; lane < lanes; ++lane) sum += Vector2(x[lane], y[lane]);
+  return f_cr / (window.resolution * window.resolution) * sum;
+}
+
+Vector2 attraction_of(const Vector2& robot, const Vector2& target, double f_ct) {
+  const double d = (target - robot).norm();
+  return d > 0.0 ? Vector2(f_ct / d * (target - robot)) : Vector2(Vector2::Zero());
+}
+
+double motion_against(double yaw, double speed, const Vector2& repulsion) {
+  const double size = repulsion.norm();
+  if (speed == 0.0 || size == 0.0) return -1.0;
+  return std::clamp(std::copysign(1.0, speed) * geometry::heading(yaw).dot(repulsion) / size, -1.0, 1.0);
+}
+
+double damping(double w, double cos_theta) { return w - (1.0 - w) * cos_theta; }
+
+double speed_of(const VffParams& params, double repulsion, double cos_theta) {
+  if (repulsion <= params.dead_band) return params.v_max;
+  return std::max(std::min(params.v_min, params.v_max), params.v_max * (1.0 - std::abs(cos_theta)));
+}
+
+double low_passed(const VffParams& params, double omega, double before) {
+  if (params.tau <= params.period) return omega;
+  return (params.period * omega + (params.tau - params.period) * before) / params.tau;
+}
+
+VffStep VirtualForceField::step(const geometry::Pose2& robot, double speed, const Vector2& target,
+                                const CertaintyWindow& window) {
+  VffStep step;
+  step.fault = fault_of(robot, speed, target, window);
+  if (step.fault != VffFault::none) {
+    reset();
+    return step;
+  }
+  step.attraction = attraction_of(robot.position(), target, params_.f_ct);  // 3
+  step.repulsion = repulsion_of(window, params_.f_cr);                      // 1, 2
+  const double cos_theta = motion_against(robot.yaw, speed, step.repulsion);
+  step.damped = damping(params_.w, cos_theta) * step.repulsion;  // 8
+  step.resultant = step.attraction + step.damped;
+
+  double omega = 0.0;
+  if (!step.resultant.isZero(0.0)) {
+    const double theta = std::atan2(step.resultant.y(), step.resultant.x());  // 4
+    omega = std::clamp(params_.k_s * geometry::angle_between(robot.yaw, theta), -params_.turn_rate,
+                       params_.turn_rate);  // 5
+  }
+  turning_ = low_passed(params_, omega, turning_);  // 7
+  step.twist = {speed_of(params_, step.repulsion.norm(), cos_theta), turning_};
+  return step;
+}
+
+}  // namespace kervan::control
