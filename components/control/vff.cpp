@@ -12,7 +12,8 @@ constexpr int middle = window_side / 2;
 
 /// What a cell of certainty 1 pushes with at Fcr = 1 and cells of 1 m.
 struct UnitForces {
-  std::array<float, window_cells> x{}, y{};
+  alignas(16) std::array<float, window_cells> x{};
+  alignas(16) std::array<float, window_cells> y{};
 };
 
 UnitForces made_unit_forces() {
@@ -83,23 +84,13 @@ void cut_window(const grid::Grid<grid::Certainty>& cells, const Vector2& robot, 
 }
 
 Vector2 repulsion_of(const CertaintyWindow& window, double f_cr) {
-  // Eight sums side by side, whose order does not depend on what the compiler makes of it.
-  constexpr std::size_t lanes = 8;
-  std::array<float, lanes> x{}, y{};
-  std::size_t i = 0;
-  for (; i + lanes <= window_cells; i += lanes)
-    for (std::size_t lane = 0; lane < lanes; ++lane) {
-      const auto certainty = static_cast<float>(window.cells[i + lane]);
-      x[lane] += certainty * unit_forces.x[i + lane];
-      y[lane] += certainty * unit_forces.y[i + lane];
-    }
-  for (; i < window_cells; ++i) {
-    x[0] += static_cast<float>(window.cells[i]) * unit_forces.x[i];
-    y[0] += static_cast<float>(window.cells[i]) * unit_forces.y[i];
-  }
-  Vector2 sum = Vector2::Zero();
-  for (std::size_t lane = 0; lane < lanes; ++lane) sum += Vector2(x[lane], y[lane]);
-  return f_cr / (window.resolution * window.resolution) * sum;
+  using Row = Eigen::Matrix<float, static_cast<int>(window_cells), 1>;
+  alignas(16) std::array<float, window_cells> certainties;
+  std::transform(window.cells.begin(), window.cells.end(), certainties.begin(),
+                 [](std::uint8_t cell) { return static_cast<float>(cell); });
+  const Eigen::Map<const Row, Eigen::Aligned16> c(certainties.data());
+  const Eigen::Map<const Row, Eigen::Aligned16> x(unit_forces.x.data()), y(unit_forces.y.data());
+  return f_cr / (window.resolution * window.resolution) * Vector2(c.dot(x), c.dot(y));
 }
 
 Vector2 attraction_of(const Vector2& robot, const Vector2& target, double f_ct) {
