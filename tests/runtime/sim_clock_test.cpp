@@ -199,7 +199,7 @@ TEST_F(SimClock, AnotherContainerFollowsIt) {
   const auto report = follower.run({});
   thread.join();
   EXPECT_EQ(report.end, RunEnd::finished) << report.reason;
-  ASSERT_EQ(Watcher::times.size(), 100u);
+  ASSERT_GE(Watcher::times.size(), 100u);  // time goes on while the run ends
   for (std::size_t i = 0; i < Watcher::times.size(); ++i) {
     EXPECT_EQ(Watcher::times[i].time_since_epoch() % 10ms, 0ms) << "only times that /clock has named";
     if (i > 0) {

@@ -206,7 +206,7 @@ TEST_F(BadInput, Options) {
   expect_refused(
       {"rnu", "lab"},
       "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd\n");
-  expect_refused({"describe", "control/field"}, "there is no component type 'control/field'; there are: ");
+  expect_refused({"describe", "magic/wand"}, "there is no component type 'magic/wand'; there are: ");
 }
 
 TEST_F(BadInput, FoldersThatAreNotThereOrCannotBeWritten) {
