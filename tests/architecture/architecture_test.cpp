@@ -123,7 +123,7 @@ const std::vector<Fence> fences = {
     // Whoever logs: what runs components, and components in their handlers.
     {"spdlog/",
      {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
-    {"CLI/", {"deploy/cli/main\\.cpp"}},
+    {"CLI/", {"deploy/cli/main\\.cpp", "tests/experiments/.*"}},
     {"png.h", {"framework/map_file/image\\.cpp"}},
     {"emmintrin.h", {"components/mapping/.*_kernel\\..pp"}},
     {"immintrin.h", {"sim/ray_kernel_avx.*\\.cpp"}},

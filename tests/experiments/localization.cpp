@@ -6,6 +6,7 @@
 //   kervan_localization_experiment --place hall --seeds 3 --time 100 --plots FOLDER
 //
 // The exit code is 1 if scan matching is not as much better as is asked.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +14,6 @@
 #include <memory>
 #include <numbers>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -57,11 +57,6 @@ struct Options {
   std::string place, plots;
 };
 
-struct Arms {
-  localization::LaserLocalizerParams laser;
-  localization::SonarLocalizerParams sonar;
-};
-
 struct Error {
   double position = 0.0;  // m
   double yaw = 0.0;       // rad
@@ -98,17 +93,23 @@ Error error_of(const Pose2& pose, const Pose2& truth) {
   return {(pose.position() - truth.position()).norm(), std::abs(geometry::angle_between(pose.yaw, truth.yaw))};
 }
 
+localization::LaserLocalizerParams mounted(const Pose2& mount) {
+  localization::LaserLocalizerParams params;
+  params.mount = mount;
+  return params;
+}
+
 /// One robot, and what three localizers make of its wheels and its sensors. Frame odom begins at the robot's true
 /// start, so that it is the frame map as long as nothing drifts.
 class Run {
  public:
-  Run(std::shared_ptr<const sim::World> world, const sim::RobotSetup& setup, const Arms& arms, unsigned seed)
+  Run(std::shared_ptr<const sim::World> world, const sim::RobotSetup& setup, unsigned seed)
       : world_(world),
         model_(setup.model),
         simulation_(std::move(world), {setup}, seed),
         wanderer_(seed),
-        laser_(arms.laser),
-        sonar_(arms.sonar) {}
+        laser_(mounted(setup.model.laser->pose)),
+        sonar_({}) {}
 
   Drive drive(int time) {
     constexpr auto step = 50ms;
@@ -168,7 +169,7 @@ class Run {
   Drive drive_;
 };
 
-std::vector<Drive> drives(const Place& place, const Wheels& wheels, const Options& options, Arms arms) {
+std::vector<Drive> drives(const Place& place, const Wheels& wheels, const Options& options) {
   const auto world = std::make_shared<const sim::World>(
       sim::load_world(KERVAN_SOURCES "/sim/worlds/" + std::string(place.name) + ".yaml"));
   sim::RobotSetup setup{
@@ -176,10 +177,9 @@ std::vector<Drive> drives(const Place& place, const Wheels& wheels, const Option
   setup.odometry.drift = wheels.drift;
   setup.odometry.slip = wheels.slip;
   setup.odometry.resolution = setup.model.odometry.resolution;
-  arms.laser.mount = setup.model.laser->pose;
   std::vector<Drive> result;
   for (int seed = 1; seed <= options.seeds; ++seed)
-    result.push_back(Run(world, setup, arms, static_cast<unsigned>(seed)).drive(options.time));
+    result.push_back(Run(world, setup, static_cast<unsigned>(seed)).drive(options.time));
   return result;
 }
 
@@ -265,7 +265,7 @@ bool table(const Options& options) {
   for (const Place& place : places) {
     if (!options.place.empty() && options.place != place.name) continue;
     for (const Wheels& wheels : all_wheels) {
-      const std::vector<Drive> all = drives(place, wheels, options, {});
+      const std::vector<Drive> all = drives(place, wheels, options);
       print(place, wheels, all);
       if (&wheels != &all_wheels.back()) continue;
       good = (options.smoke || good_enough(all)) && good;
@@ -275,38 +275,27 @@ bool table(const Options& options) {
   return good;
 }
 
-Options read(const std::vector<std::string>& words) {
-  Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--smoke") {
-      options.smoke = true;
-      options.seeds = 1;
-      options.time = 20;
-      continue;
-    }
-    if (i + 1 == words.size()) throw std::invalid_argument(words[i] + " needs a value, or is unknown");
-    const std::string& value = words[i + 1];
-    if (words[i] == "--seeds")
-      options.seeds = std::stoi(value);
-    else if (words[i] == "--time")
-      options.time = std::stoi(value);
-    else if (words[i] == "--place")
-      options.place = value;
-    else if (words[i] == "--plots")
-      options.plots = value;
-    else
-      throw std::invalid_argument("unknown: " + words[i]);
-    ++i;
-  }
-  return options;
-}
-
 }  // namespace
 }  // namespace kervan::test
 
 int main(int argc, char** argv) {
+  using namespace kervan::test;
+  Options options;
+  std::vector<std::string> names;
+  for (const Place& place : places) names.emplace_back(place.name);
+  CLI::App app("How well a robot whose wheels err knows where it is.");
+  app.add_flag("--smoke", options.smoke, "one short drive of each");
+  app.add_option("--seeds", options.seeds)->check(CLI::PositiveNumber);
+  app.add_option("--time", options.time, "of a drive, s")->check(CLI::PositiveNumber);
+  app.add_option("--place", options.place)->check(CLI::IsMember(names));
+  app.add_option("--plots", options.plots, "folder for a plot of each place")->check(CLI::ExistingDirectory);
+  CLI11_PARSE(app, argc, argv)
+  if (options.smoke) {
+    options.seeds = 1;
+    options.time = 20;
+  }
   try {
-    return kervan::test::table(kervan::test::read({argv + 1, argv + argc})) ? 0 : 1;
+    return table(options) ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
     return 2;

@@ -2,15 +2,15 @@
 //
 //   kervan_wall_follow_experiment               all experiments, 20 seeds
 //   kervan_wall_follow_experiment --smoke       one seed of each
-//   kervan_wall_follow_experiment --only paper_law --seeds 3 --world box --trace 2
+//   kervan_wall_follow_experiment --only paper_law --seeds 3 --world room.yaml --trace 2
 //
 // The exit code is 1 if what is asked of an experiment does not hold.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -253,44 +253,29 @@ bool table(const Experiment& experiment, const Options& options) {
   return good;
 }
 
-Options read(const std::vector<std::string>& words) {
-  Options options;
-  for (std::size_t i = 0; i < words.size(); ++i) {
-    if (words[i] == "--smoke") {
-      options.smoke = true;
-      options.seeds = 1;
-      continue;
-    }
-    if (i + 1 == words.size()) throw std::invalid_argument(words[i] + " needs a value, or is unknown");
-    const std::string& value = words[i + 1];
-    if (words[i] == "--seeds")
-      options.seeds = std::stoi(value);
-    else if (words[i] == "--trace")
-      options.trace = std::stoi(value);
-    else if (words[i] == "--time")
-      options.time = std::stod(value);
-    else if (words[i] == "--only")
-      options.only = value;
-    else if (words[i] == "--world")
-      options.world = value;
-    else
-      throw std::invalid_argument("unknown: " + words[i]);
-    ++i;
-  }
-  options.seeds = std::max(options.seeds, options.trace);
-  return options;
-}
-
 }  // namespace
 }  // namespace kervan::test
 
 int main(int argc, char** argv) {
+  using namespace kervan::test;
+  Options options;
+  std::vector<std::string> names, worlds;
+  for (const Experiment& experiment : experiments) names.emplace_back(experiment.name);
+  for (const Place& place : places) worlds.emplace_back(place.name());
+  CLI::App app("How well the behaviours follow walls.");
+  app.add_flag("--smoke", options.smoke, "one seed, few worlds");
+  app.add_option("--seeds", options.seeds)->check(CLI::PositiveNumber);
+  app.add_option("--trace", options.trace, "the seed whose run is printed step by step")->check(CLI::PositiveNumber);
+  app.add_option("--time", options.time, "of a run, s")->check(CLI::PositiveNumber);
+  app.add_option("--only", options.only, "one experiment")->check(CLI::IsMember(names));
+  app.add_option("--world", options.world)->check(CLI::IsMember(worlds));
+  CLI11_PARSE(app, argc, argv)
+  if (options.smoke) options.seeds = 1;
+  options.seeds = std::max(options.seeds, options.trace);
   try {
-    const kervan::test::Options options = kervan::test::read({argv + 1, argv + argc});
     bool good = true;
-    for (const auto& experiment : kervan::test::experiments)
-      if (options.only.empty() || options.only == experiment.name)
-        good = kervan::test::table(experiment, options) && good;
+    for (const Experiment& experiment : experiments)
+      if (options.only.empty() || options.only == experiment.name) good = table(experiment, options) && good;
     return good ? 0 : 1;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "%s\n", error.what());
