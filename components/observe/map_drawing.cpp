@@ -392,7 +392,8 @@ void draw_patch(WorldLayer& layer, const Polyline& line, const char* fill) {
   layer.polygon({line[0] - up, line[1] - up, line[1] + up, line[0] + up}, fill, "#d5dbe1", 1.0);
 }
 
-/// What the lines and marks mean, in two columns from (margin, top) downwards, page pixels. Returns where it ends.
+/// What the lines and marks mean that the drawing has, in two columns from (margin, top) downwards, page pixels.
+/// Returns where it ends.
 double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
   WorldLayer layer(svg, 1.0);
   const char* colour = robot_colours[0];
@@ -400,45 +401,51 @@ double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
     const char* text;
     void (*draw)(WorldLayer&, const Polyline&, const char*);  // given the two ends of a sample line
   };
-  std::vector<Entry> entries{
-      {"driven, truth", [](WorldLayer& l, const Polyline& p, const char* c) { draw_truth(l, p, c); }},
-      {"goal", [](WorldLayer& l, const Polyline& p, const char*) { draw_goal(l, (p[0] + p[1]) / 2.0); }},
-      {"driven, by odometry", [](WorldLayer& l, const Polyline& p, const char*) { draw_odometry(l, p); }},
-      {"tolerance",
-       [](WorldLayer& l, const Polyline& p, const char*) {
-         l.circle((p[0] + p[1]) / 2.0, 6.5, "none", success_colour, 1.4, l.dashes(5.0, 4.0));
-       }},
-      {"planned route", [](WorldLayer& l, const Polyline& p, const char* c) { draw_route(l, p, c); }},
-      {"closest approach", [](WorldLayer& l, const Polyline& p, const char*) { draw_closest(l, (p[0] + p[1]) / 2.0); }},
-      {"start and end",
-       [](WorldLayer& l, const Polyline& p, const char* c) {
-         draw_start(l, p[0] + Vector2(5.0, 0.0), c);
-         draw_end(l, p[1] - Vector2(5.0, 0.0), c);
-       }},
-      {"contact", [](WorldLayer& l, const Polyline& p, const char*) { draw_contact(l, (p[0] + p[1]) / 2.0); }},
+  std::vector<Entry> entries;
+  const auto explain = [&](bool drawn, const Entry& entry) {
+    if (drawn) entries.push_back(entry);
   };
-  if (std::any_of(drawing.robots.begin(), drawing.robots.end(), [](const auto& r) { return !r.snapshots.empty(); }))
-    entries.push_back(
-        {"seen by its sensors, at the time beside it", [](WorldLayer& l, const Polyline& p, const char* c) {
-           const geometry::Pose2 at{p[0].x(), p[0].y(), 0.0};
-           l.veil(cone(at, 0.5, 26.0), c);
-           draw_arrowhead(l, at, c);
-         }});
-  if (!drawing.movers.empty())
-    entries.push_back({"moving obstacle, at the end filled", [](WorldLayer& l, const Polyline& p, const char*) {
-                         const Vector2 r(4.0, 4.0), s(4.0, -4.0);
-                         draw_mover(l, {p, {{p[1] - r, p[1] + s, p[1] + r, p[1] - s}}}, 0.0);
-                       }});
-  if (drawing.map) {
-    entries.push_back(
-        {"the map: free", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#ffffff"); }});
-    entries.push_back(
-        {"the map: occupied", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#000000"); }});
-    entries.push_back({"the map: nothing known",
-                       [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, unknown_colour); }});
-    entries.push_back(
-        {"the world, truth", [](WorldLayer& l, const Polyline& p, const char*) { l.line(p, truth_colour, 1.4); }});
-  }
+  const auto any = [&](auto has) { return std::any_of(drawing.robots.begin(), drawing.robots.end(), has); };
+  const bool driven = any([](const DrawnRobot& r) { return !r.truth.empty(); });
+  const bool goals = any([](const DrawnRobot& r) { return r.goal.has_value(); });
+  explain(driven, {"driven, truth", [](WorldLayer& l, const Polyline& p, const char* c) { draw_truth(l, p, c); }});
+  explain(goals, {"goal", [](WorldLayer& l, const Polyline& p, const char*) { draw_goal(l, (p[0] + p[1]) / 2.0); }});
+  explain(any([](const DrawnRobot& r) { return !r.odometry.empty(); }),
+          {"driven, by odometry", [](WorldLayer& l, const Polyline& p, const char*) { draw_odometry(l, p); }});
+  explain(goals, {"tolerance", [](WorldLayer& l, const Polyline& p, const char*) {
+                    l.circle((p[0] + p[1]) / 2.0, 6.5, "none", success_colour, 1.4, l.dashes(5.0, 4.0));
+                  }});
+  explain(any([](const DrawnRobot& r) { return !r.route.empty(); }),
+          {"planned route", [](WorldLayer& l, const Polyline& p, const char* c) { draw_route(l, p, c); }});
+  explain(any([](const DrawnRobot& r) { return r.closest.has_value(); }),
+          {"closest approach",
+           [](WorldLayer& l, const Polyline& p, const char*) { draw_closest(l, (p[0] + p[1]) / 2.0); }});
+  explain(driven, {"start and end", [](WorldLayer& l, const Polyline& p, const char* c) {
+                     draw_start(l, p[0] + Vector2(5.0, 0.0), c);
+                     draw_end(l, p[1] - Vector2(5.0, 0.0), c);
+                   }});
+  explain(any([](const DrawnRobot& r) { return !r.contacts.empty(); }),
+          {"contact", [](WorldLayer& l, const Polyline& p, const char*) { draw_contact(l, (p[0] + p[1]) / 2.0); }});
+  explain(any([](const DrawnRobot& r) { return !r.snapshots.empty(); }),
+          {"seen by its sensors, at the time beside it", [](WorldLayer& l, const Polyline& p, const char* c) {
+             const geometry::Pose2 at{p[0].x(), p[0].y(), 0.0};
+             l.veil(cone(at, 0.5, 26.0), c);
+             draw_arrowhead(l, at, c);
+           }});
+  explain(!drawing.movers.empty(),
+          {"moving obstacle, at the end filled", [](WorldLayer& l, const Polyline& p, const char*) {
+             const Vector2 r(4.0, 4.0), s(4.0, -4.0);
+             draw_mover(l, {p, {{p[1] - r, p[1] + s, p[1] + r, p[1] - s}}}, 0.0);
+           }});
+  const bool mapped = drawing.map.has_value();
+  explain(mapped,
+          {"the map: free", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#ffffff"); }});
+  explain(mapped,
+          {"the map: occupied", [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, "#000000"); }});
+  explain(mapped, {"the map: nothing known",
+                   [](WorldLayer& l, const Polyline& p, const char*) { draw_patch(l, p, unknown_colour); }});
+  explain(mapped,
+          {"the world, truth", [](WorldLayer& l, const Polyline& p, const char*) { l.line(p, truth_colour, 1.4); }});
   double y = top;
   for (std::size_t i = 0; i < entries.size(); ++i) {
     const double x = margin + (i % 2 == 0 ? 0.0 : 205.0);

@@ -66,6 +66,24 @@ TEST(MapDrawing, ShowsTheResultTheFiguresAndTheWaypointsNumbers) {
   EXPECT_TRUE(has(svg, ">goal of r1</text>"));
 }
 
+TEST(MapDrawing, ExplainsTheSignsItHasAndNoOthers) {
+  MapDrawing drawing = small_run();
+  for (const char* sign :
+       {">driven, truth<", ">driven, by odometry<", ">planned route<", ">goal<", ">closest approach<"})
+    EXPECT_TRUE(has(to_svg(drawing), sign)) << sign;
+  EXPECT_FALSE(has(to_svg(drawing), ">contact<"));
+
+  DrawnRobot& robot = drawing.robots[0];
+  robot.contacts = {{1.0, 1.0}};
+  robot.goal.reset();
+  robot.closest.reset();
+  robot.route.clear();
+  const std::string svg = to_svg(drawing);
+  EXPECT_TRUE(has(svg, ">contact<"));
+  for (const char* sign : {">goal<", ">tolerance<", ">closest approach<", ">planned route<"})
+    EXPECT_FALSE(has(svg, sign)) << sign;
+}
+
 TEST(MapDrawing, EscapesWhatPeopleWrite) {
   MapDrawing drawing = small_run();
   drawing.title = "a<b & \"c\"";
