@@ -18,6 +18,7 @@
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/GoalStatus.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
 #include "sensor_msgs/msg/Range.hpp"
@@ -69,6 +70,7 @@ class Contender {
         contact_(owner, name + "/contact", qos::event, "Every touch of " + name + "."),
         clearance_(owner, name + "/clearance", qos::state.optional(),
                    "Distance of the hull of " + name + " to the world."),
+        status_(owner, name + "/goal_status", qos::latched.optional(), "What " + name + " makes of its goal."),
         goal_(owner, name + "/goal", qos::latched, "Where " + name + " is to go.") {}
 
   /// `memory`: of the score before the component was started again; nullptr if there is none.
@@ -86,6 +88,11 @@ class Contender {
     for (const auto& clearance : clearance_.take()) score_->clearance(static_cast<double>(clearance->range));
     for (const auto& truth : truth_.take())
       score_->truth(now, geometry::pose_of(truth->pose.pose), geometry::twist_of(truth->twist.twist));
+    if (const auto* status = status_.latest();
+        status && status->state == kervan_msgs::msg::GoalState::GOAL_FAILED && status->goal_id == goal_id_) {
+      score_->give_up(now);
+      why_ = status->reason;
+    }
     score_->tick(now);
     if (score_->figures().goal != goal) publish_goal(now);
   }
@@ -97,6 +104,8 @@ class Contender {
            decimal(score_->goal().x(), 2) + ", " + decimal(score_->goal().y(), 2) + ")";
   }
   bool reached() const { return score_->figures().outcome == observe::MissionOutcome::reached; }
+  bool gave_up() const { return score_->figures().outcome == observe::MissionOutcome::given_up; }
+  const std::string& why() const { return why_; }  ///< it gave up
   const std::string& name() const { return name_; }
   std::string missing() const { return truth_.missing(); }
 
@@ -118,6 +127,7 @@ class Contender {
     geometry_msgs::msg::PoseStamped goal;
     geometry::set_header(goal.header, now, "map");
     goal.pose = geometry::to_message(geometry::Pose2{score_->goal().x(), score_->goal().y(), 0.0});
+    goal_id_ = geometry::goal_id_of(goal.header.stamp);
     goal_.publish(goal);
   }
 
@@ -126,12 +136,15 @@ class Contender {
   Input<nav_msgs::msg::Odometry> truth_;
   Input<kervan_msgs::msg::Contact> contact_;
   Input<sensor_msgs::msg::Range> clearance_;
+  Input<kervan_msgs::msg::GoalStatus> status_;
   Output<geometry_msgs::msg::PoseStamped> goal_;
+  std::string goal_id_;
+  std::string why_;
   std::optional<MissionScore> score_;
 };
 
 /// Sends robots to their goals and judges them on the simulator's truth (mission_score.hpp). Ends the run when all have
-/// arrived or the time is up; a run that is ended from outside before that is `aborted`.
+/// arrived, one has given up or the time is up; a run that is ended from outside before that is `aborted`.
 class MissionComponent final : public Component {
   const MissionComponentParams& params_ = parameters<MissionComponentParams>();
   std::deque<Contender> robots_ = contenders();
@@ -210,19 +223,20 @@ class MissionComponent final : public Component {
 
   void on_tick(Time now) {
     if (judged_) return;
-    bool ended = true, reached = true;
+    bool ended = true, reached = true, given_up = false;
     std::string missing;
     for (auto& robot : robots_) {
       look(robot, now);
       ended = ended && robot.score().ended();
       reached = reached && robot.reached();
+      given_up = given_up || robot.gave_up();
       if (missing.empty()) missing = robot.missing();
     }
     if (missing.empty())
       report_active();
     else if (now - activated_ >= params_.period)  // At the first tick nobody can have published yet.
       report_degraded(missing);
-    if (!ended) {
+    if (!ended && !given_up) {
       if (now - saved_ < 1s) return;
       saved_ = now;
       return remember();
@@ -240,9 +254,12 @@ class MissionComponent final : public Component {
     if (!run_folder().empty()) fs::remove(memory_file(), ignored);
   }
 
-  /// Who did not arrive and how far away it was; empty if all did.
+  /// Who gave up and why; if nobody did, who did not arrive and how far away it was; empty if all did.
   std::string reason() const {
     std::string text;
+    for (const auto& robot : robots_)
+      if (robot.gave_up()) text += (text.empty() ? "" : "; ") + robot.name() + " has given up: " + robot.why();
+    if (!text.empty()) return text;
     for (const auto& robot : robots_) {
       if (robot.reached()) continue;
       text += text.empty() ? "the time is up: " : ", ";

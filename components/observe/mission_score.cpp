@@ -58,6 +58,12 @@ void MissionScore::clearance(double distance) {
   figures_.min_clearance = std::min(distance, figures_.min_clearance.value_or(distance));
 }
 
+void MissionScore::give_up(Time now) {
+  if (ended()) return;
+  figures_.outcome = MissionOutcome::given_up;
+  figures_.time = seconds(now - start_);
+}
+
 void MissionScore::tick(Time now) {
   if (ended() || now - start_ < params_.timeout) return;
   figures_.outcome = MissionOutcome::timed_out;

@@ -21,7 +21,7 @@ struct MissionParams {
   Duration rest_time = std::chrono::milliseconds(500);  ///< how long it must stand within the tolerance
 };
 
-enum class MissionOutcome { running, reached, timed_out };
+enum class MissionOutcome { running, reached, timed_out, given_up };
 
 /// The figures so far. Distances are in metres, between the robot's base_link and the goal it drives to, or drove to
 /// last.
@@ -47,7 +47,7 @@ struct MissionMemory {
 };
 
 /// A goal is reached by standing, for rest_time, within the tolerance. Passing it does not count, nor does standing
-/// elsewhere end the mission; only the time-out does. Once it has ended the figures no longer change.
+/// elsewhere end the mission; only giving up and the time-out do. Once it has ended the figures no longer change.
 class MissionScore {
  public:
   MissionScore(MissionParams params, Time start) : params_(std::move(params)), start_(start) {}
@@ -66,6 +66,9 @@ class MissionScore {
 
   /// The distance between the robot's hull and the world, m.
   void clearance(double distance);
+
+  /// The robot will not go on: ends the mission before its time.
+  void give_up(Time now);
 
   /// Ends the mission when its time is up, even if no truth comes any more.
   void tick(Time now);

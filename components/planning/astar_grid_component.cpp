@@ -28,6 +28,7 @@ struct AstarGridParams {
   double tolerance = 0.25;
   std::int64_t most_expanded = 0;
   double memory = 256.0;
+  PlannerShellParams shell;
 
   template <class Visitor>
   void describe(Visitor& v) {
@@ -62,6 +63,7 @@ struct AstarGridParams {
     v(most_expanded, "most_expanded",
       {.min = 0, .max = 1'000'000'000, .help = "Cells that a plan may look at; 0: all.", .live = true});
     v(memory, "memory", {.unit = "", .min = 0.1, .max = 16384.0, .help = "That map and search may take, in MiB."});
+    shell.describe(v);
   }
 
   GridPlannerParams of_planner() const {
@@ -185,6 +187,7 @@ class AstarGridComponent final : public PlannerShell {
     return refused_ > 0 ? trouble_ : tiles_.missing();
   }
   std::string trouble() const override { return trouble_; }
+  const PlannerShellParams& shell_params() const override { return params_.shell; }
 
   const Plan& plan(const geometry::Vector2& start, const geometry::Vector2& goal) override {
     look_beyond(start);

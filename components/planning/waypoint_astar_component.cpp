@@ -15,6 +15,7 @@ struct WaypointAstarParams {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> costs;
   double reach = 1.0;
+  PlannerShellParams shell;
 
   template <class Visitor>
   void describe(Visitor& v) {
@@ -28,6 +29,7 @@ struct WaypointAstarParams {
        .max = 100.0,
        .help = "Farthest start and goal may lie from a waypoint.",
        .live = true});
+    shell.describe(v);
   }
 };
 
@@ -63,6 +65,8 @@ class WaypointAstarComponent final : public PlannerShell {
   const WaypointAstarParams& params_ = parameters<WaypointAstarParams>();
   WaypointPlanner planner_{graph_of(params_), params_.reach};
   Plan plan_;
+
+  const PlannerShellParams& shell_params() const override { return params_.shell; }
 
   void on_parameters_changed() override { planner_.set_reach(params_.reach); }
 

@@ -30,6 +30,13 @@ inline Time time_of(const builtin_interfaces::msg::Time& message) {
   return Time(std::chrono::seconds(message.sec) + Duration(message.nanosec));
 }
 
+/// "SEC.NANOSEC", nine digits behind the point: how a GoalStatus names the goal with this stamp.
+inline std::string goal_id_of(const builtin_interfaces::msg::Time& stamp) {
+  std::string nanoseconds = std::to_string(stamp.nanosec);
+  nanoseconds.insert(0, nanoseconds.size() < 9 ? 9 - nanoseconds.size() : 0, '0');
+  return std::to_string(stamp.sec) + "." + nanoseconds;
+}
+
 inline builtin_interfaces::msg::Duration to_message(Duration duration) {
   const builtin_interfaces::msg::Time parts = to_message(Time(duration));
   builtin_interfaces::msg::Duration message;

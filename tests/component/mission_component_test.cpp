@@ -4,6 +4,7 @@
 
 #include "framework/test/harness.hpp"
 #include "kervan_msgs/msg/Contact.hpp"
+#include "kervan_msgs/msg/GoalStatus.hpp"
 #include "kervan_msgs/msg/MissionResult.hpp"
 #include "sensor_msgs/msg/Range.hpp"
 #include "tests/component/plane_fixtures.hpp"
@@ -121,6 +122,28 @@ TEST(MissionComponent, ReportsAbortedWhenTheRunIsEndedFromOutside) {
   ASSERT_TRUE(result);
   EXPECT_EQ(result->result, MissionOutcome::MISSION_ABORTED);
   EXPECT_NEAR(result->robots[0].path_m, 3.0, 0.02);
+}
+
+TEST(MissionComponent, FailsAtOnceWhenARobotGivesItsGoalUp) {
+  Harness harness("observe/mission", to_ten());
+  drive(harness, "r1", 0.0, 3.0, 5s);
+  kervan_msgs::msg::GoalStatus status;
+  status.state = kervan_msgs::msg::GoalState::GOAL_FAILED;
+  status.goal_id = "77.000000000";
+  status.reason = "no route: all is lost";
+  harness.feed("r1/goal_status", status);
+  harness.advance(20ms);
+  EXPECT_FALSE(harness.finished()) << "that was another goal";
+  status.goal_id = geometry::goal_id_of(harness.latest<PoseStamped>("r1/goal")->header.stamp);
+  harness.feed("r1/goal_status", status);
+  harness.advance(20ms);
+  EXPECT_TRUE(harness.finished());
+  const auto* result = harness.latest<MissionResult>("result");
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->result, MissionOutcome::MISSION_FAILED);
+  EXPECT_EQ(result->reason, "r1 has given up: no route: all is lost");
+  EXPECT_FALSE(result->robots[0].reached);
+  EXPECT_NEAR(result->robots[0].time_s, 5.04, 0.021);
 }
 
 TEST(MissionComponent, RefusesAMissionWithoutGoals) {

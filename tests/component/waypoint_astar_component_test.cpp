@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/test/harness.hpp"
+#include "kervan_msgs/msg/GoalStatus.hpp"
 #include "nav_msgs/msg/Path.hpp"
 #include "tests/component/plane_fixtures.hpp"
 
@@ -8,6 +9,8 @@ namespace kervan::test {
 namespace {
 
 using namespace std::chrono_literals;
+using kervan_msgs::msg::GoalState;
+using kervan_msgs::msg::GoalStatus;
 using nav_msgs::msg::Path;
 
 ValueMap triangle() {
@@ -98,6 +101,57 @@ TEST(WaypointAstarComponent, RefusesCostsThatDoNotFitTheEdges) {
   EXPECT_EQ(refusal_of(parameters), "subject.costs: 1 costs for 2 edges; allowed: one for each, or none");
   parameters["costs"] = ValueList{9.0, 1.0};
   EXPECT_NE(refusal_of(parameters), "accepted") << "1 m is shorter than the edge";
+}
+
+/// As pose_at(), stamped.
+geometry_msgs::msg::PoseStamped goal_at(double x, double y, Duration stamp) {
+  auto goal = pose_at(x, y);
+  goal.header.stamp = geometry::to_message(Time(stamp));
+  return goal;
+}
+
+TEST(WaypointAstarComponent, SaysWhatBecomesOfTheGoal) {
+  Harness harness("planning/waypoint_astar", triangle());
+  harness.feed("goal", goal_at(8.0, 0.0, 2s + 5ms));
+  harness.advance(10ms);
+  const auto* status = harness.latest<GoalStatus>("goal_status");
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->state, GoalState::GOAL_PENDING);
+  EXPECT_EQ(status->goal_id, "2.005000000");
+  EXPECT_TRUE(std::isnan(status->distance));
+  harness.feed("odom", odometry_at({0.0, 0.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_ACTIVE);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->distance, 8.0);
+  harness.feed("odom", odometry_at({7.69, 0.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_ACTIVE);
+  harness.feed("odom", odometry_at({7.71, 0.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_REACHED);
+  harness.feed("odom", odometry_at({4.0, 3.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_REACHED) << "it stays that";
+}
+
+TEST(WaypointAstarComponent, SaysThatAGoalHasFailedOrWasReplaced) {
+  Harness harness("planning/waypoint_astar", triangle());
+  harness.feed("odom", odometry_at({0.0, 0.0, 0.0}));
+  harness.feed("goal", goal_at(20.0, 20.0, 1s));
+  harness.advance(10ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_FAILED);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->reason, "no route: no edges lead from the start to the goal");
+  harness.feed("goal", goal_at(8.0, 0.0, 2s));
+  harness.advance(10ms);
+  harness.take<GoalStatus>("goal_status");
+  harness.feed("goal", goal_at(4.0, 3.0, 3s));
+  harness.advance(10ms);
+  std::vector<std::pair<std::string, GoalState>> seen;
+  for (const auto& status : harness.take<GoalStatus>("goal_status")) seen.emplace_back(status->goal_id, status->state);
+  const std::vector<std::pair<std::string, GoalState>> expected = {{"2.000000000", GoalState::GOAL_CANCELLED},
+                                                                   {"3.000000000", GoalState::GOAL_PENDING},
+                                                                   {"3.000000000", GoalState::GOAL_ACTIVE}};
+  EXPECT_EQ(seen, expected);
 }
 
 }  // namespace
