@@ -1,4 +1,4 @@
-/// The component around every controller that drives to a waypoint by its sonars. What differs is the controller.
+/// The component around every controller that drives to a waypoint. What differs is the control law, and what it sees.
 #pragma once
 
 #include <chrono>
@@ -6,54 +6,62 @@
 #include <string>
 #include <utility>
 
+#include "components/control/control_law.hpp"
 #include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
 #include "geometry_msgs/msg/TwistStamped.hpp"
-#include "kervan_msgs/msg/ForceField.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 
 namespace kervan::control {
 
-/// What a controller makes of what it knows, in the frame of the odometry.
+/// What a component makes of a Steering.
 struct Controlled {
   geometry::Twist2 twist = {};
-  geometry::Vector2 attraction = geometry::Vector2::Zero();  ///< the forces behind it, without a unit
-  geometry::Vector2 repulsion = geometry::Vector2::Zero();
-  std::string fault = {};  ///< why it cannot tell: the robot stands; empty if it can
+  Outcome outcome = Outcome::drives;
+  std::string why = {};  ///< as Steering has it; a fault names the input that it is about
 };
 
-/// Params have the members `period` (Duration) and `arrive_within` (m). Stands, and reports `degraded` with the reason,
-/// while an input it needs is missing or stale; stands still at its waypoint until the next comes.
+/// Of a controller that looks at no obstacles.
+struct NoObstacles {};
+
+/// `Params` have the members `period` (Duration) and `arrive_within` (m). `Obstacles`, if any, is the message of which
+/// the controller learns about them: SonarArray on the port `sonar`, or LaserScan on `scan`. Stands, and reports
+/// `degraded` with the reason, while an input it needs is missing or stale; stands still at its waypoint until the next
+/// comes.
+template <class Params, class Obstacles = NoObstacles>
+class ControllerShell;
+
 template <class Params>
-class ControllerShell : public Component {
+class ControllerShell<Params, NoObstacles> : public Component {
  protected:
-  /// A round of the sonars, heard with base_link at `robot`. Returns why it is of no use; empty if it is.
-  virtual std::string hear(const kervan_msgs::msg::SonarArray& sonar, const geometry::Pose2& robot) = 0;
-  /// A round came while the robot did not know where it was.
-  virtual void forget() = 0;
-  /// One step, every period. `robot`, `goal` are finite; `speed`: along the heading, m/s, as the odometry has it.
-  virtual Controlled control(const geometry::Pose2& robot, double speed, const geometry::Vector2& goal) = 0;
+  static constexpr Duration oldest = std::chrono::milliseconds(500);
+
+  /// One step, every period. Pose and target are finite; both, and what is shown for looking at, are in frame().
+  virtual Controlled control(Time now, const RobotState& robot, const geometry::Vector2& target) = 0;
   /// The robot stands this period, whatever the controller would say.
   virtual void on_stand() {}
+  /// Why it must stand, though pose and waypoint are known; empty: it need not.
+  virtual std::string unready() { return {}; }
+  /// Of its inputs besides odometry and waypoint; empty if it has them.
+  virtual std::string missing() { return {}; }
   /// What has been wrong with the inputs, as long as the controller works; empty: nothing.
   virtual std::string trouble() { return {}; }
+
+  /// Where the robot is; nullptr while nobody knows.
+  const nav_msgs::msg::Odometry* odometry() const { return odom_.latest(); }
+  const std::string& frame() const { return odom_.latest()->header.frame_id; }
 
   const Params& params_ = parameters<Params>();
 
  private:
-  static constexpr Duration oldest = std::chrono::milliseconds(500);
-
   Input<geometry_msgs::msg::PoseStamped> waypoint_{this, "waypoint", qos::latched, &ControllerShell::on_waypoint,
                                                    "Where to drive, in the frame of the odometry."};
   Input<nav_msgs::msg::Odometry> odom_{this, "odom", qos::sensor.max_age(oldest), "Where the robot is."};
-  Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(oldest), &ControllerShell::on_sonar,
-                                             "Obstacles around the robot."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command, "Speed wanted of base_link."};
-  Output<kervan_msgs::msg::ForceField> force_{this, "force", qos::sensor, "The forces on the robot, for looking at."};
   Timer tick_{this, params_.period, &ControllerShell::on_tick};
-  std::string unheard_;  ///< why the last sonar round was of no use
   bool arrived_ = false;
   Time activated_{};
 
@@ -61,33 +69,26 @@ class ControllerShell : public Component {
 
   void on_waypoint(const geometry_msgs::msg::PoseStamped&, Time) { arrived_ = false; }
 
-  void on_sonar(const kervan_msgs::msg::SonarArray& sonar, Time) {
-    if (const auto* odometry = odom_.latest()) {
-      unheard_ = hear(sonar, geometry::pose_of(odometry->pose.pose));
-    } else {
-      unheard_ = "heard while the robot did not know where it was";
-      forget();
-    }
-  }
-
   void on_tick(Time now) {
-    for (const std::string& why : {waypoint_.missing(), odom_.missing(), sonar_.missing()})
+    for (const std::string& why : {waypoint_.missing(), odom_.missing(), missing()})
       if (!why.empty()) return stand(now, why);
     const auto& odometry = *odom_.latest();
-    const geometry::Pose2 robot = geometry::pose_of(odometry.pose.pose);
-    const geometry::Vector2 goal = geometry::position_of(waypoint_.latest()->pose);
-    if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return stand(now, "odom: the pose is not finite");
-    if (!goal.allFinite()) return stand(now, "waypoint: the position is not finite");
-    if (!unheard_.empty()) return stand(now, sonar_.name() + ": " + unheard_);
+    const RobotState robot{geometry::pose_of(odometry.pose.pose), geometry::twist_of(odometry.twist.twist)};
+    const geometry::Vector2 target = geometry::position_of(waypoint_.latest()->pose);
+    if (!robot.pose.position().allFinite() || !std::isfinite(robot.pose.yaw))
+      return stand(now, "odom: the pose is not finite");
+    if (!target.allFinite()) return stand(now, "waypoint: the position is not finite");
+    if (std::string why = unready(); !why.empty()) return stand(now, std::move(why));
 
-    Controlled controlled = control(robot, odometry.twist.twist.linear.x, goal);
-    if (!controlled.fault.empty()) return stand(now, std::move(controlled.fault));
-    publish_force(now, odometry.header.frame_id, robot, controlled);
-    arrived_ = arrived_ || (goal - robot.position()).norm() <= params_.arrive_within;
+    Controlled controlled = control(now, robot, target);
+    if (controlled.outcome == Outcome::fault) return stand(now, std::move(controlled.why));
+    arrived_ = arrived_ || (target - robot.pose.position()).norm() <= params_.arrive_within;
     if (arrived_) on_stand();
     command(now, arrived_ ? geometry::Twist2{} : controlled.twist);
     if (std::string why = trouble(); !why.empty())
       report_degraded(std::move(why));
+    else if (!arrived_ && controlled.outcome == Outcome::hindered)
+      report_degraded(std::move(controlled.why));
     else
       report_active();
   }
@@ -108,18 +109,56 @@ class ControllerShell : public Component {
     message->twist = geometry::to_message(twist);
     cmd_vel_.publish(std::move(message));
   }
+};
 
-  void publish_force(Time now, const std::string& frame, const geometry::Pose2& robot, const Controlled& controlled) {
-    auto message = force_.loan();
-    geometry::set_header(message->header, now, frame);
-    message->position.x = robot.x;
-    message->position.y = robot.y;
-    message->attraction.x = controlled.attraction.x();
-    message->attraction.y = controlled.attraction.y();
-    message->repulsion.x = controlled.repulsion.x();
-    message->repulsion.y = controlled.repulsion.y();
-    force_.publish(std::move(message));
+/// The port of a message about obstacles.
+template <class Message>
+struct ObstaclePort;
+
+template <>
+struct ObstaclePort<kervan_msgs::msg::SonarArray> {
+  static constexpr const char *name = "sonar", *help = "Obstacles around the robot.";
+};
+
+template <>
+struct ObstaclePort<sensor_msgs::msg::LaserScan> {
+  static constexpr const char *name = "scan", *help = "What the laser measures.";
+};
+
+template <class Params, class Obstacles>
+class ControllerShell : public ControllerShell<Params, NoObstacles> {
+  using Shell = ControllerShell<Params, NoObstacles>;
+
+ protected:
+  /// A message came, with base_link at `robot`. Returns why it is of no use; empty if it is.
+  virtual std::string hear(const Obstacles& obstacles, const geometry::Pose2& robot) = 0;
+  /// A message came while the robot did not know where it was.
+  virtual void forget() {}
+
+  /// The last message, and where base_link was when it came; in control() there is one, and hear() found it of use.
+  const Obstacles& heard() const { return *obstacles_.latest(); }
+  const geometry::Pose2& heard_at() const { return heard_at_; }
+
+ private:
+  using Port = ObstaclePort<Obstacles>;
+
+  Input<Obstacles> obstacles_{this, Port::name, qos::sensor.max_age(Shell::oldest), &ControllerShell::on_obstacles,
+                              Port::help};
+  geometry::Pose2 heard_at_;
+  std::string unheard_;  ///< why the last message was of no use
+
+  void on_obstacles(const Obstacles& obstacles, Time) {
+    if (const auto* odometry = this->odometry()) {
+      heard_at_ = geometry::pose_of(odometry->pose.pose);
+      unheard_ = hear(obstacles, heard_at_);
+    } else {
+      unheard_ = "heard while the robot did not know where it was";
+      forget();
+    }
   }
+
+  std::string missing() final { return obstacles_.missing(); }
+  std::string unready() final { return unheard_.empty() ? std::string() : obstacles_.name() + ": " + unheard_; }
 };
 
 }  // namespace kervan::control

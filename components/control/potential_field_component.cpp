@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "components/control/controller_shell.hpp"
+#include "components/control/force_display.hpp"
 #include "components/control/nearest_echo.hpp"
 #include "components/control/potential_field.hpp"
 
@@ -63,7 +64,8 @@ struct PotentialFieldParams {
 };
 
 /// Drives a robot along the force of a potential field (potential_field.hpp).
-class PotentialFieldComponent final : public ControllerShell<PotentialFieldParams> {
+class PotentialFieldComponent final : public ControllerShell<PotentialFieldParams, kervan_msgs::msg::SonarArray> {
+  ForceDisplay display_{this};
   std::vector<std::optional<geometry::Vector2>> heard_;  // by each sonar at last, in the frame of the odometry
   std::optional<geometry::Vector2> obstacle_;            // the nearest of them
 
@@ -96,9 +98,10 @@ class PotentialFieldComponent final : public ControllerShell<PotentialFieldParam
     return {};
   }
 
-  Controlled control(const geometry::Pose2& robot, double, const geometry::Vector2& goal) override {
-    const Force force = force_at(params_.force, robot.position(), goal, obstacle_);
-    return {drive_along(params_.drive, force, robot.yaw), force.attraction, force.repulsion};
+  Controlled control(Time now, const RobotState& robot, const geometry::Vector2& target) override {
+    const Force force = force_at(params_.force, robot.pose.position(), target, obstacle_);
+    display_.show(now, frame(), robot.pose.position(), force.attraction, force.repulsion);
+    return {drive_along(params_.drive, force, robot.pose.yaw)};
   }
 };
 

@@ -40,31 +40,17 @@ std::uint8_t union_of(const std::array<std::uint8_t, window_cells>& cells) {
 }
 static_assert((grid::most_certain & (grid::most_certain + 1)) == 0, "all bits below the highest one are used");
 
-VffFault fault_of(const geometry::Pose2& robot, double speed, const Vector2& target, const CertaintyWindow& window) {
-  if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return VffFault::pose;
-  if (!std::isfinite(speed)) return VffFault::speed;
-  if (!target.allFinite()) return VffFault::target;
-  if (!(window.resolution > 0.0) || !std::isfinite(window.resolution)) return VffFault::resolution;
-  const Vector2 off = (robot.position() - window.origin) / window.resolution - Vector2::Constant(middle + 0.5);
-  if (!(off.cwiseAbs().maxCoeff() <= 0.5 + 1e-6)) return VffFault::place;  // also NaN
-  if (union_of(window.cells) > grid::most_certain) return VffFault::certainty;
-  return VffFault::none;
+/// What is wrong with these inputs; empty: nothing.
+std::string_view fault_of(const RobotState& robot, const Vector2& target, const CertaintyWindow& window) {
+  if (const std::string_view fault = fault_of(robot, target); !fault.empty()) return fault;
+  if (!(window.resolution > 0.0) || !std::isfinite(window.resolution)) return "the cells of the window have no size";
+  const Vector2 off = (robot.pose.position() - window.origin) / window.resolution - Vector2::Constant(middle + 0.5);
+  if (!(off.cwiseAbs().maxCoeff() <= 0.5 + 1e-6)) return "the robot is not in the middle of the window";  // also NaN
+  if (union_of(window.cells) > grid::most_certain) return "a cell of the window is more certain than 15";
+  return {};
 }
 
 }  // namespace
-
-std::string_view to_text(VffFault fault) {
-  switch (fault) {
-    case VffFault::none: return "";
-    case VffFault::pose: return "the pose is not finite";
-    case VffFault::speed: return "the speed is not finite";
-    case VffFault::target: return "the target is not finite";
-    case VffFault::resolution: return "the cells of the window have no size";
-    case VffFault::place: return "the robot is not in the middle of the window";
-    case VffFault::certainty: return "a cell of the window is more certain than 15";
-  }
-  return "";
-}
 
 void cut_window(const grid::Grid<grid::Certainty>& cells, const Vector2& robot, CertaintyWindow& window) {
   const grid::Cell center = grid::cell_of(robot, cells.resolution());
@@ -116,24 +102,24 @@ double low_passed(const VffParams& params, double omega, double before) {
   return (params.period * omega + (params.tau - params.period) * before) / params.tau;
 }
 
-VffStep VirtualForceField::step(const geometry::Pose2& robot, double speed, const Vector2& target,
-                                const CertaintyWindow& window) {
+VffStep VirtualForceField::step(const RobotState& robot, const Vector2& target, const CertaintyWindow& window) {
   VffStep step;
-  step.fault = fault_of(robot, speed, target, window);
-  if (step.fault != VffFault::none) {
+  step.why = fault_of(robot, target, window);
+  if (!step.why.empty()) {
+    step.outcome = Outcome::fault;
     reset();
     return step;
   }
-  step.attraction = attraction_of(robot.position(), target, params_.f_ct);  // 3
-  step.repulsion = repulsion_of(window, params_.f_cr);                      // 1, 2
-  const double cos_theta = motion_against(robot.yaw, speed, step.repulsion);
+  step.attraction = attraction_of(robot.pose.position(), target, params_.f_ct);  // 3
+  step.repulsion = repulsion_of(window, params_.f_cr);                           // 1, 2
+  const double cos_theta = motion_against(robot.pose.yaw, robot.twist.linear, step.repulsion);
   step.damped = damping(params_.w, cos_theta) * step.repulsion;  // 8
   step.resultant = step.attraction + step.damped;
 
   double omega = 0.0;
   if (!step.resultant.isZero(0.0)) {
     const double theta = std::atan2(step.resultant.y(), step.resultant.x());  // 4
-    omega = std::clamp(params_.k_s * geometry::angle_between(robot.yaw, theta), -params_.turn_rate,
+    omega = std::clamp(params_.k_s * geometry::angle_between(robot.pose.yaw, theta), -params_.turn_rate,
                        params_.turn_rate);  // 5
   }
   turning_ = low_passed(params_, omega, turning_);  // 7

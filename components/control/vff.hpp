@@ -14,8 +14,8 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 
+#include "components/control/control_law.hpp"
 #include "components/grid/certainty.hpp"
 #include "components/grid/grid.hpp"
 #include "framework/geometry/pose2.hpp"
@@ -49,23 +49,8 @@ struct VffParams {
   double turn_rate = 2.094;  ///< rad/s, the most: 120 deg/s
 };
 
-enum class VffFault {
-  none,
-  pose,        ///< not finite
-  speed,       ///< not finite
-  target,      ///< not finite
-  resolution,  ///< of the window: not positive, or not finite
-  place,       ///< the robot is not in the middle cell of the window
-  certainty,   ///< a cell has more than 15
-};
-
-/// One sentence without a full stop; empty for none.
-std::string_view to_text(VffFault fault);
-
-/// What a step did. With a fault everything else is zero.
-struct VffStep {
-  VffFault fault = VffFault::none;
-  geometry::Twist2 twist;                                    ///< what to command
+/// What a step did. With a fault all forces are zero.
+struct VffStep : Steering {
   geometry::Vector2 attraction = geometry::Vector2::Zero();  ///< Ft, eq. 3
   geometry::Vector2 repulsion = geometry::Vector2::Zero();   ///< Fr, eq. 2
   geometry::Vector2 damped = geometry::Vector2::Zero();      ///< Fr', eq. 8
@@ -101,10 +86,10 @@ class VirtualForceField {
   /// The robot stands: what eq. 7 remembers is over.
   void reset() { turning_ = 0.0; }
 
-  /// `robot` and `target` in the frame of the window's origin; `speed`: with which the robot drives along its heading,
-  /// m/s. On the target without a repulsion it does not turn. A fault is as reset().
-  VffStep step(const geometry::Pose2& robot, double speed, const geometry::Vector2& target,
-               const CertaintyWindow& window);
+  /// `robot` and `target` in the frame of the window's origin. On the target without a repulsion it does not turn. A
+  /// fault is as reset(): a pose, a speed or a target that is not finite, a window whose cells have no size, or are
+  /// more certain than 15, or in whose middle cell the robot is not.
+  VffStep step(const RobotState& robot, const geometry::Vector2& target, const CertaintyWindow& window);
 
  private:
   VffParams params_;

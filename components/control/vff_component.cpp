@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "components/control/controller_shell.hpp"
+#include "components/control/force_display.hpp"
 #include "components/control/vff.hpp"
 #include "components/mapping/sonar_mapper.hpp"
 
@@ -81,18 +82,16 @@ struct VffComponentParams {
 };
 
 /// Drives a robot with a virtual force field (vff.hpp), from certainty values that it gathers itself.
-class VffComponent final : public ControllerShell<VffComponentParams> {
+class VffComponent final : public ControllerShell<VffComponentParams, kervan_msgs::msg::SonarArray> {
+  ForceDisplay display_{this};
   VirtualForceField field_{params_.of_field()};
-  mapping::SonarMapper grid_{params_.of_grid()};
+  mapping::SonarMapper grid_{params_.of_grid()};  // what it knows stays true while the robot does not know where it is
   CertaintyWindow window_;
   std::string trouble_;  // since the last step
 
   void on_parameters_changed() override { field_.set_params(params_.of_field()); }
 
   void on_stand() override { field_.reset(); }
-
-  /// What the grid knows stays true.
-  void forget() override {}
 
   std::string trouble() override { return std::exchange(trouble_, {}); }
 
@@ -115,12 +114,14 @@ class VffComponent final : public ControllerShell<VffComponentParams> {
     return {};
   }
 
-  Controlled control(const geometry::Pose2& robot, double speed, const geometry::Vector2& goal) override {
-    if (!grid::has_cell(robot.position())) return {.fault = "odom: the robot is too far away from its origin"};
-    cut_window(*grid_.certainties(), robot.position(), window_);
-    const VffStep step = field_.step(robot, speed, goal, window_);
-    if (step.fault != VffFault::none) return {.fault = "odom: " + std::string(to_text(step.fault))};
-    return {step.twist, step.attraction, step.damped};
+  Controlled control(Time now, const RobotState& robot, const geometry::Vector2& target) override {
+    const geometry::Vector2 position = robot.pose.position();
+    if (!grid::has_cell(position)) return {{}, Outcome::fault, "odom: the robot is too far away from its origin"};
+    cut_window(*grid_.certainties(), position, window_);
+    const VffStep step = field_.step(robot, target, window_);
+    if (step.outcome == Outcome::fault) return {{}, step.outcome, "odom: " + std::string(step.why)};
+    display_.show(now, frame(), position, step.attraction, step.damped);
+    return {step.twist};
   }
 };
 

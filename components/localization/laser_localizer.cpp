@@ -9,8 +9,8 @@ using geometry::Pose2;
 LaserLocalizer::LaserLocalizer(const LaserLocalizerParams& params)
     : params_(params), localizer_(params.localizer), map_(params.localizer.matcher.resolution, params.most_bytes) {}
 
-Outcome LaserLocalizer::scan(const Pose2& odom, const mapping::Scan& scan) {
-  if (!mapping::possible(scan) || !same_laser(scan)) return Outcome::refused_scan;
+Outcome LaserLocalizer::scan(const Pose2& odom, const geometry::Scan& scan) {
+  if (!geometry::possible(scan) || !same_laser(scan)) return Outcome::refused_scan;
   if (!grid::has_cell(localizer_.expected(odom).position())) return Outcome::refused_place;
   if (matched_ && !params_.between_matches.exceeded(*matched_, odom)) return Outcome::waiting;
   matched_ = odom;
@@ -23,13 +23,13 @@ Outcome LaserLocalizer::scan(const Pose2& odom, const mapping::Scan& scan) {
   return outcome;
 }
 
-bool LaserLocalizer::same_laser(const mapping::Scan& scan) {
+bool LaserLocalizer::same_laser(const geometry::Scan& scan) {
   const Laser laser{scan.ranges.size(), scan.angle_min, scan.angle_increment};
   if (!laser_) laser_ = laser;
   return *laser_ == laser;
 }
 
-void LaserLocalizer::find_echoes(const mapping::Scan& scan) {
+void LaserLocalizer::find_echoes(const geometry::Scan& scan) {
   echoes_.clear();
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     const double range = static_cast<double>(scan.ranges[i]);

@@ -32,15 +32,15 @@ class LaserLocalizer {
 
   /// A scan (laser_mapper.hpp) that was taken when base_link was at `odom`. Ranges that are none are left out and
   /// counted.
-  Outcome scan(const geometry::Pose2& odom, const mapping::Scan& scan);
+  Outcome scan(const geometry::Pose2& odom, const geometry::Scan& scan);
 
   std::uint64_t refused_ranges() const { return refused_ranges_; }
   /// Echoes that are not in the map because it may not grow any more.
   std::uint64_t refused_memory() const { return refused_memory_; }
 
  private:
-  bool same_laser(const mapping::Scan& scan);
-  void find_echoes(const mapping::Scan& scan);
+  bool same_laser(const geometry::Scan& scan);
+  void find_echoes(const geometry::Scan& scan);
   void insert(const geometry::Pose2& odom);
 
   LaserLocalizerParams params_;

@@ -8,6 +8,7 @@
 #include "components/localization/pose_ports.hpp"
 #include "components/localization/scan_match_params.hpp"
 #include "components/mapping/posed_readings.hpp"
+#include "framework/geometry/messages.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
 
@@ -96,9 +97,7 @@ class ScanMatchComponent final : public Component {
 
   void place(Time now) {
     scans_.release(now, [this](const geometry::Pose2& odom, const Sample<LaserScan>& scan, Time) {
-      count(by_laser_->scan(
-          odom, {static_cast<double>(scan->angle_min), static_cast<double>(scan->angle_increment),
-                 static_cast<double>(scan->range_min), static_cast<double>(scan->range_max), scan->ranges}));
+      count(by_laser_->scan(odom, geometry::scan_of(*scan)));
     });
     rounds_.release(now, [this](const geometry::Pose2& odom, const Sample<SonarArray>& array, Time) {
       echoes_.clear();

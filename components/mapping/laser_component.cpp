@@ -2,6 +2,7 @@
 
 #include "components/mapping/laser_mapper.hpp"
 #include "components/mapping/map_maker.hpp"
+#include "framework/geometry/messages.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
 
 namespace kervan::mapping {
@@ -45,9 +46,7 @@ class LaserComponent final : public MapMaker<LaserComponentParams, LaserMapper, 
 
   void insert(const geometry::Pose2& pose, const LaserScan& scan) override {
     const std::uint64_t refused = mapper_.refused_ranges();
-    const ScanResult result = mapper_.add(
-        pose * params_.mount, {static_cast<double>(scan.angle_min), static_cast<double>(scan.angle_increment),
-                               static_cast<double>(scan.range_min), static_cast<double>(scan.range_max), scan.ranges});
+    const ScanResult result = mapper_.add(pose * params_.mount, geometry::scan_of(scan));
     if (mapper_.refused_ranges() != refused) complain("scan: ranges that are no distance are left out");
     switch (result) {
       case ScanResult::added: ++added_; return;

@@ -10,9 +10,9 @@
 namespace kervan::mapping {
 namespace {
 
+using geometry::Scan;
 using geometry::Vector2;
 
-constexpr std::size_t most_beams = 1'000'000;
 constexpr double whole_turn = 2.0 * std::numbers::pi;
 
 /// A polygon ends this much before what the beam met, in cells: more than half the diagonal of one, so that the cell of
@@ -33,13 +33,6 @@ void sort_few(float* begin, float* end) {
 }
 
 }  // namespace
-
-bool possible(const Scan& scan) {
-  return std::isfinite(scan.angle_min) && std::isfinite(scan.angle_increment) && scan.angle_increment != 0.0 &&
-         std::isfinite(scan.range_min) && scan.range_min >= 0.0 && !std::isnan(scan.range_max) &&
-         scan.range_max > scan.range_min && scan.ranges.size() <= most_beams &&
-         std::abs(scan.angle_increment) * static_cast<double>(scan.ranges.size()) < 2.0 * whole_turn;
-}
 
 LaserMapper::LaserMapper(const LaserMapperParams& params)
     : params_(params),

@@ -8,6 +8,7 @@
 
 #include "components/grid/grid.hpp"
 #include "components/grid/log_odds.hpp"
+#include "framework/geometry/scan.hpp"
 
 namespace kervan::mapping {
 
@@ -19,18 +20,6 @@ struct LaserMapperParams {
   double no_echo_limit = 0.0;                       ///< m, how far a beam that brings nothing back clears its way
   std::size_t most_bytes = std::size_t{128} << 20;  ///< that the cells may take
 };
-
-/// A scan as sensor_msgs/LaserScan has it; angles in rad from the laser's x axis, ranges in m.
-struct Scan {
-  double angle_min = 0.0;
-  double angle_increment = 0.0;
-  double range_min = 0.0;
-  double range_max = 0.0;
-  std::span<const float> ranges;
-};
-
-/// Whether its angles and limits are those of a scan.
-bool possible(const Scan& scan);
 
 enum class ScanResult {
   added,
@@ -50,7 +39,7 @@ class LaserMapper {
   /// `laser`: its pose in the map's frame when the scan was taken. A range at or beyond scan.range_max, infinity
   /// included, is a beam that brought nothing back (REP 117). NaN, and ranges below range_min, are left out with their
   /// part of the polygon; those that are NaN or negative, but not -infinity, are counted as refused.
-  ScanResult add(const geometry::Pose2& laser, const Scan& scan);
+  ScanResult add(const geometry::Pose2& laser, const geometry::Scan& scan);
 
   std::uint64_t refused_ranges() const { return refused_ranges_; }
 
@@ -72,8 +61,8 @@ class LaserMapper {
     grid::LogOdds before;
   };
 
-  void use_beams(const Scan& scan);
-  void trace(const geometry::Pose2& laser, const Scan& scan);
+  void use_beams(const geometry::Scan& scan);
+  void trace(const geometry::Pose2& laser, const geometry::Scan& scan);
   void edge(const geometry::Vector2& from, const geometry::Vector2& to, int left);
   void fill(const grid::CellBox& box);
 

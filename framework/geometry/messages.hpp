@@ -1,5 +1,5 @@
-/// Poses, speeds and times of the plane as the ROS 2 messages carry them. What the plane does not have (z, roll, pitch)
-/// is ignored on the way in and zero on the way out.
+/// Poses, speeds, scans and times of the plane as the ROS 2 messages carry them. What the plane does not have (z, roll,
+/// pitch) is ignored on the way in and zero on the way out.
 #pragma once
 
 #include <cmath>
@@ -10,8 +10,10 @@
 #include "builtin_interfaces/msg/Time.hpp"
 #include "framework/component/time.hpp"
 #include "framework/geometry/pose2.hpp"
+#include "framework/geometry/scan.hpp"
 #include "geometry_msgs/msg/Pose.hpp"
 #include "geometry_msgs/msg/Twist.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 #include "std_msgs/msg/Header.hpp"
 
 namespace kervan::geometry {
@@ -63,6 +65,12 @@ inline Pose2 pose_of(const geometry_msgs::msg::Pose& pose) {
 }
 
 inline Twist2 twist_of(const geometry_msgs::msg::Twist& twist) { return {twist.linear.x, twist.angular.z}; }
+
+/// Its ranges are those of the message, which must live as long.
+inline Scan scan_of(const sensor_msgs::msg::LaserScan& scan) {
+  return {static_cast<double>(scan.angle_min), static_cast<double>(scan.angle_increment),
+          static_cast<double>(scan.range_min), static_cast<double>(scan.range_max), scan.ranges};
+}
 
 inline geometry_msgs::msg::Pose to_message(const Pose2& pose) {
   geometry_msgs::msg::Pose message;

@@ -75,8 +75,8 @@ const std::vector<Arrow> arrows = {
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // One shell around seven behaviours, each a declaration in its own component; one around the planners, and one
-    // around the controllers.
-    {"components/(behavior/behaviour|planning/planner|control/controller)_shell\\.hpp",
+    // around the controllers, two of which show the forces that steer them.
+    {"components/(behavior/behaviour_shell|planning/planner_shell|control/(controller_shell|force_display))\\.hpp",
      {own_folder, "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
     // time.hpp is two aliases of std::chrono; an algorithm that takes a time takes it as everybody else does.
     {"components/.*",

@@ -58,7 +58,7 @@ void bench_vff(double share, bool smoke) {
     }));
     control::cut_window(cells, {0.05, 0.05}, window);
     step_ns.push_back(time_of([&](const Vector2& at) {
-      sink += field.step({0.05, 0.05, at.x()}, 0.5, at, window).twist.angular;
+      sink += field.step({{0.05, 0.05, at.x()}, {0.5, 0.0}}, at, window).twist.angular;
     }));
     textbook_ns.push_back(time_of(
         [&](const Vector2& at) { sink += textbook_repulsion(window, Vector2(0.05, 0.05) + 1e-3 * at, 0.02).x(); }));

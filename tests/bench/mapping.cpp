@@ -119,7 +119,7 @@ std::vector<float> room() {
 
 void bench_laser(double resolution, bool smoke) {
   const std::vector<float> ranges = room();
-  const mapping::Scan scan{-0.5 * std::numbers::pi, std::numbers::pi / 180.0, 0.05, 15.0, ranges};
+  const geometry::Scan scan{-0.5 * std::numbers::pi, std::numbers::pi / 180.0, 0.05, 15.0, ranges};
   mapping::LaserMapper laser({.resolution = resolution});
   std::vector<Method> methods;
   auto textbook = bench::textbook_map(resolution, {});

@@ -23,7 +23,7 @@ std::vector<float> ranges_at(const Pose2& laser, const Walls& walls = room) {
   return ranges;
 }
 
-mapping::Scan scan_of(const std::vector<float>& ranges) { return {first_beam, spacing, 0.05, 10.0, ranges}; }
+geometry::Scan scan_of(const std::vector<float>& ranges) { return {first_beam, spacing, 0.05, 10.0, ranges}; }
 
 LaserLocalizerParams with_mount() {
   LaserLocalizerParams params;
@@ -99,7 +99,7 @@ TEST(LaserLocalizer, LeavesOutWhatCannotBeOrIsOfAnotherLaser) {
   LaserLocalizer localizer(with_mount());
   localizer.filter().odometry(Time{}, {});
   std::vector<float> ranges = ranges_at({});
-  mapping::Scan scan = scan_of(ranges);
+  geometry::Scan scan = scan_of(ranges);
   scan.angle_increment = std::numeric_limits<double>::quiet_NaN();
   EXPECT_EQ(localizer.scan({}, scan), Outcome::refused_scan);
   scan = scan_of(ranges);

@@ -36,7 +36,7 @@ std::vector<float> room(const Pose2& pose, int beams, double from, double step) 
   return ranges;
 }
 
-Scan half_circle(const std::vector<float>& ranges) {
+geometry::Scan half_circle(const std::vector<float>& ranges) {
   return {radians(-90.0), radians(180.0) / static_cast<double>(ranges.size() - 1), 0.05, 8.0, ranges};
 }
 
@@ -128,13 +128,13 @@ TEST(LaserMapper, LeavesOutWhatIsNoDistance) {
 TEST(LaserMapper, RefusesScansThatCannotBe) {
   const std::vector<float> ranges(181, 2.0f);
   const double bad = std::numeric_limits<double>::quiet_NaN();
-  for (const Scan& scan : {Scan{bad, 0.01, 0.0, 8.0, ranges},
-                           {0.0, 0.0, 0.0, 8.0, ranges},
-                           {0.0, bad, 0.0, 8.0, ranges},
-                           {0.0, 0.01, -1.0, 8.0, ranges},
-                           {0.0, 0.01, 8.0, 8.0, ranges},
-                           {0.0, 0.01, 0.0, bad, ranges},
-                           {0.0, 1.0, 0.0, 8.0, ranges}}) {
+  for (const geometry::Scan& scan : {geometry::Scan{bad, 0.01, 0.0, 8.0, ranges},
+                                     {0.0, 0.0, 0.0, 8.0, ranges},
+                                     {0.0, bad, 0.0, 8.0, ranges},
+                                     {0.0, 0.01, -1.0, 8.0, ranges},
+                                     {0.0, 0.01, 8.0, 8.0, ranges},
+                                     {0.0, 0.01, 0.0, bad, ranges},
+                                     {0.0, 1.0, 0.0, 8.0, ranges}}) {
     LaserMapper mapper({});
     EXPECT_EQ(mapper.add({}, scan), ScanResult::refused_scan);
     EXPECT_TRUE(mapper.box().empty());
