@@ -5,6 +5,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "components/grid/messages.hpp"
 #include "components/planning/grid_planner.hpp"
@@ -27,6 +28,7 @@ struct AstarGridParams {
   double escape = 0.5;
   double tolerance = 0.25;
   std::int64_t most_expanded = 0;
+  double dearer = 0.2;
   double memory = 256.0;
   PlannerShellParams shell;
 
@@ -62,6 +64,11 @@ struct AstarGridParams {
        .live = true});
     v(most_expanded, "most_expanded",
       {.min = 0, .max = 1'000'000'000, .help = "Cells that a plan may look at; 0: all.", .live = true});
+    v(dearer, "dearer",
+      {.min = 0.0,
+       .max = 1000.0,
+       .help = "There is a new plan when the way left costs more than this share more than it did.",
+       .live = true});
     v(memory, "memory", {.unit = "", .min = 0.1, .max = 16384.0, .help = "That map and search may take, in MiB."});
     shell.describe(v);
   }
@@ -88,6 +95,8 @@ class AstarGridComponent final : public PlannerShell {
   std::uint64_t refused_ = 0;
   std::string trouble_;
   Plan plan_;
+  RouteWatch watch_;
+  bool changed_ = false;  ///< the map, since the last look at the route
 
  public:
   // A plan may take longer than others want to wait for their turn.
@@ -138,6 +147,7 @@ class AstarGridComponent final : public PlannerShell {
       return refuse(std::string("map: ") + error.what());
     }
     tiled_ = false;
+    changed_ = true;
     try_to_plan(now);
   }
 
@@ -158,7 +168,9 @@ class AstarGridComponent final : public PlannerShell {
     cells_.touch(box);
     known_ = grid::united(known_, box);
     tiled_ = true;
-    try_to_plan(now);
+    // More tiles may come at the same time: the route is looked at when all are there.
+    changed_ = true;
+    if (waiting()) try_to_plan(now);
   }
 
   void refuse(std::string why) {
@@ -195,10 +207,19 @@ class AstarGridComponent final : public PlannerShell {
     planner_.update(cells_, known_);
     planner_.plan({start, goal, params_.escape, params_.tolerance, static_cast<std::size_t>(params_.most_expanded)},
                   plan_);
+    if (plan_.outcome == Outcome::found) watch_.watch(planner_.costmap(), plan_.points);
+    changed_ = false;
     return plan_;
   }
 
-  void announce(const Plan& plan, const geometry::Vector2& goal) override {
+  RouteChange route_change(double along) override {
+    if (!std::exchange(changed_, false)) return RouteChange::none;
+    planner_.update(cells_, known_);
+    return watch_.look(planner_.costmap(), along, params_.dearer);
+  }
+
+  void announce(const Plan& plan, const geometry::Vector2& goal, const std::string& again) override {
+    if (!again.empty()) log().info("plans again: {}", again);
     log().info("route to ({:.2f}, {:.2f}) over {} points: {:.2f} m; looked at {} cells", goal.x(), goal.y(),
                plan.points.size(), plan.length, plan.expanded);
     if (plan.start_moved > 0.0) log().info("it begins with {:.2f} m to a free place", plan.start_moved);

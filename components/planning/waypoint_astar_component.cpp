@@ -15,7 +15,8 @@ struct WaypointAstarParams {
   std::vector<std::pair<std::int64_t, std::int64_t>> edges;
   std::vector<double> costs;
   double reach = 1.0;
-  PlannerShellParams shell;
+  // The graph does not change: planning again by itself would bring the same route.
+  PlannerShellParams shell{.replan = {.deviation = 0.0, .progress_within = {}, .tries = 1}};
 
   template <class Visitor>
   void describe(Visitor& v) {
@@ -75,7 +76,8 @@ class WaypointAstarComponent final : public PlannerShell {
     return plan_;
   }
 
-  void announce(const Plan& plan, const geometry::Vector2& goal) override {
+  void announce(const Plan& plan, const geometry::Vector2& goal, const std::string& again) override {
+    if (!again.empty()) log().info("plans again: {}", again);
     log().info("route to ({:.2f}, {:.2f}) over {}: {:.2f} m", goal.x(), goal.y(), numbers(planner_.nodes()),
                plan.length);
   }

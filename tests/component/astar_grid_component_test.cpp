@@ -7,6 +7,8 @@
 
 #include "framework/map_file/map_file.hpp"
 #include "framework/test/harness.hpp"
+#include "kervan_msgs/msg/GoalStatus.hpp"
+#include "kervan_msgs/msg/ReplanRequest.hpp"
 #include "nav_msgs/msg/OccupancyGrid.hpp"
 #include "nav_msgs/msg/Path.hpp"
 #include "tests/component/map_fixtures.hpp"
@@ -15,6 +17,8 @@ namespace kervan::test {
 namespace {
 
 using namespace std::chrono_literals;
+using kervan_msgs::msg::GoalState;
+using kervan_msgs::msg::GoalStatus;
 using nav_msgs::msg::OccupancyGrid;
 using nav_msgs::msg::Path;
 namespace fs = std::filesystem;
@@ -47,10 +51,10 @@ std::vector<geometry::Vector2> points_of(const Path& path) {
   return points;
 }
 
-/// The answer to one goal.
+/// The answer to one goal, which may have to wait for its turn after another.
 const Path* ask(Harness& harness, double x, double y) {
   harness.feed("goal", pose_at(x, y));
-  harness.advance(10ms);
+  harness.advance(300ms);
   return harness.latest<Path>("route");
 }
 
@@ -257,6 +261,160 @@ TEST(AstarGridComponent, RefusesJumpPointsWhereCellsDiffer) {
             "subject.search: jump_point needs cells that all cost the same; allowed with clearance_cost: 0");
   params["clearance_cost"] = 0.0;
   EXPECT_EQ(refusal_of(params), "accepted");
+}
+
+/// Drives straight from x0 to x1 along y, with odometry at 20 Hz.
+void drive(Harness& harness, double x0, double x1, double y, Duration time) {
+  for (Duration t{}; t <= time; t += 50ms) {
+    harness.feed("odom", odometry_at({x0 + (x1 - x0) * seconds(t) / seconds(time), y, 0.0}));
+    harness.advance(50ms);
+  }
+}
+
+OccupancyGrid with_wall_closed() {
+  OccupancyGrid map = room_message();
+  for (int y = 30; y < rows; ++y) map.data[static_cast<std::size_t>(y * columns + 30)] = 100;
+  return map;
+}
+
+OccupancyGrid without_wall() {
+  OccupancyGrid map = room_message();
+  map.data.assign(map.data.size(), 0);
+  return map;
+}
+
+TEST(AstarGridComponent, PlansAgainFromWhereTheRobotIsWhenAnObstacleAppearsOnTheRoute) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", without_wall());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_EQ(ask(harness, 5.0, 1.0)->poses.size(), 2u);
+  drive(harness, 1.0, 2.0, 1.0, 2s);
+  EXPECT_EQ(harness.take<Path>("route").size(), 1u) << "nothing called for another";
+  harness.feed("map", room_message());
+  drive(harness, 2.0, 2.0, 1.0, 100ms);
+  const auto points = points_of(*harness.latest<Path>("route"));
+  ASSERT_GE(points.size(), 3u);
+  EXPECT_EQ(points.front(), geometry::Vector2(2.0, 1.0));
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_ACTIVE);
+  harness.take<Path>("route");
+  drive(harness, 2.0, 2.1, 1.5, 2s);
+  EXPECT_EQ(harness.take<Path>("route").size(), 0u);
+}
+
+TEST(AstarGridComponent, StopsTheRobotWhenThereIsNoWayAnyMoreTriesAgainAndGivesUp) {
+  ValueMap params = small_robot();
+  params["tries"] = std::int64_t{3};
+  Harness harness("planning/astar_grid", params);
+  harness.feed("map", room_message());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.advance(10ms);
+  EXPECT_GE(ask(harness, 5.0, 1.0)->poses.size(), 3u);
+  harness.feed("map", with_wall_closed());
+  drive(harness, 1.0, 1.0, 1.0, 500ms);
+  EXPECT_TRUE(harness.latest<Path>("route")->poses.empty());
+  EXPECT_EQ(harness.state(), ComponentState::degraded);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_ACTIVE) << "it may open again";
+  harness.feed("map", room_message());
+  drive(harness, 1.0, 1.0, 1.0, 1s);
+  EXPECT_GE(harness.latest<Path>("route")->poses.size(), 3u);
+  EXPECT_EQ(harness.state(), ComponentState::active);
+  harness.feed("map", with_wall_closed());
+  drive(harness, 1.0, 1.0, 1.0, 4s);
+  EXPECT_TRUE(harness.latest<Path>("route")->poses.empty());
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_FAILED);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->reason,
+            "no route: no free way leads from the robot to the goal");
+}
+
+TEST(AstarGridComponent, DrivesAListOfGoalsOneAfterTheOther) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", room_message());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  Path goals;
+  goals.header = pose_at(0, 0).header;
+  goals.header.stamp.sec = 7;
+  goals.poses = {pose_at(2.0, 1.0), pose_at(2.0, 3.0)};
+  harness.feed("goals", goals);
+  drive(harness, 1.0, 1.0, 1.0, 100ms);
+  EXPECT_EQ(points_of(*harness.latest<Path>("route")).back(), geometry::Vector2(2.0, 1.0));
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->goal_id, "7.000000000/1");
+  drive(harness, 1.0, 2.0, 1.0, 1s);
+  drive(harness, 2.0, 2.0, 1.0, 300ms);
+  EXPECT_EQ(points_of(*harness.latest<Path>("route")).back(), geometry::Vector2(2.0, 3.0));
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->goal_id, "7.000000000/2");
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_ACTIVE);
+  drive(harness, 2.0, 2.0, 3.0, 100ms);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_REACHED);
+  goals.poses = {pose_at(1.0, 1.0)};
+  harness.feed("goals", goals);
+  harness.advance(100ms);
+  goals.poses.clear();
+  harness.feed("goals", goals);
+  harness.advance(100ms);
+  EXPECT_TRUE(harness.latest<Path>("route")->poses.empty());
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_CANCELLED);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->reason, "withdrawn");
+}
+
+TEST(AstarGridComponent, PlansAgainOrGivesUpWhenAskedTo) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", room_message());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.advance(10ms);
+  ask(harness, 5.0, 1.0);
+  harness.advance(1s);
+  harness.take<Path>("route");
+  kervan_msgs::msg::ReplanRequest request;
+  request.reason = "the robot has turned";
+  harness.feed("replan", request);
+  harness.advance(10ms);
+  EXPECT_EQ(harness.take<Path>("route").size(), 1u);
+  request.give_up = true;
+  request.reason = "nothing helps";
+  harness.feed("replan", request);
+  harness.advance(10ms);
+  EXPECT_TRUE(harness.latest<Path>("route")->poses.empty());
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_FAILED);
+  EXPECT_EQ(harness.reason(), "nothing helps");
+}
+
+TEST(AstarGridComponent, PlansForATargetThatJumpsAtABoundedRate) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", without_wall());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.advance(10ms);
+  for (int i = 0; i < 100; ++i) {
+    harness.feed("goal", pose_at(3.0 + 0.02 * i, 1.0 + 0.02 * (i % 7)));
+    harness.advance(10ms);
+  }
+  EXPECT_EQ(harness.take<Path>("route").size(), 5u) << "one each 200 ms";
+  harness.advance(300ms);
+  EXPECT_NEAR(points_of(*harness.latest<Path>("route")).back().x(), 4.98, 1e-9) << "the last one";
+}
+
+TEST(AstarGridComponent, ReachesAGoalThatCannotBeReachedAsNearAsItCan) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", room_message());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.change_parameters({{"reached_within", 0.05}});
+  harness.advance(10ms);
+  const auto points = points_of(*ask(harness, 2.95, 1.0));
+  drive(harness, 1.0, points.back().x(), points.back().y(), 2s);
+  const auto* status = harness.latest<GoalStatus>("goal_status");
+  EXPECT_EQ(status->state, GoalState::GOAL_REACHED);
+  EXPECT_EQ(status->reason, "as near as there is a free place");
+  EXPECT_GT(status->distance, 0.1);
+}
+
+TEST(AstarGridComponent, GivesAGoalThatIsNoNumberUpAtOnce) {
+  Harness harness("planning/astar_grid", small_robot());
+  harness.feed("map", room_message());
+  harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+  harness.advance(10ms);
+  ask(harness, std::numeric_limits<double>::infinity(), 1.0);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->state, GoalState::GOAL_FAILED);
+  EXPECT_EQ(harness.latest<GoalStatus>("goal_status")->reason, "no route: the goal has a coordinate that is no number");
 }
 
 }  // namespace
