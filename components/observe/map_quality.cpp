@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
-#include <vector>
-
-#include "components/observe/decimal.hpp"
 
 namespace kervan::observe {
 namespace {
@@ -90,21 +86,6 @@ MapQuality judge(const grid::Occupancy& map, const MapTruth& truth) {
           .entropy_bits = known == 0 ? nan : entropy / static_cast<double>(known),
           .wall_error_m = occupied == 0 ? nan : error / static_cast<double>(occupied),
           .worst_wall_error_m = occupied == 0 ? nan : worst};
-}
-
-std::string to_json(const MapQuality& quality) {
-  std::string text = "{\"judged_cells\": " + std::to_string(quality.judged);
-  const std::vector<std::pair<const char*, double>> figures = {{"accuracy", quality.accuracy},
-                                                               {"near_accuracy", quality.near_accuracy},
-                                                               {"false_occupied", quality.false_occupied},
-                                                               {"false_free", quality.false_free},
-                                                               {"coverage", quality.coverage},
-                                                               {"entropy_bits", quality.entropy_bits},
-                                                               {"wall_error_m", quality.wall_error_m},
-                                                               {"worst_wall_error_m", quality.worst_wall_error_m}};
-  for (const auto& [name, value] : figures)
-    text += std::string(", \"") + name + "\": " + (std::isfinite(value) ? decimal(value, 4) : "null");
-  return text + "}";
 }
 
 }  // namespace kervan::observe

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
 
 #include "components/grid/occupancy.hpp"
 #include "components/observe/map_truth.hpp"
@@ -26,8 +25,5 @@ struct MapQuality {
 
 /// `map` must have the cells of `truth`: the same resolution.
 MapQuality judge(const grid::Occupancy& map, const MapTruth& truth);
-
-/// One line of JSON, {"accuracy": 0.9731, …}; NaN is null.
-std::string to_json(const MapQuality& quality);
 
 }  // namespace kervan::observe

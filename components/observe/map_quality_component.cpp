@@ -1,8 +1,6 @@
 #include <spdlog/spdlog.h>
 
-#include <algorithm>
 #include <deque>
-#include <fstream>
 #include <stdexcept>
 
 #include "components/grid/messages.hpp"
@@ -31,6 +29,18 @@ struct MapQualityParams {
     v(resolution, "resolution", {.unit = "m", .min = 0.01, .max = 1.0, .help = "Side of a cell, that of the map."});
   }
 };
+
+ValueMap figures_of(const MapQuality& quality) {
+  return {{"judged_cells", static_cast<std::int64_t>(quality.judged)},
+          {"accuracy", quality.accuracy},
+          {"near_accuracy", quality.near_accuracy},
+          {"false_occupied", quality.false_occupied},
+          {"false_free", quality.false_free},
+          {"coverage", quality.coverage},
+          {"entropy_bits", quality.entropy_bits},
+          {"wall_error_m", quality.wall_error_m},
+          {"worst_wall_error_m", quality.worst_wall_error_m}};
+}
 
 /// Compares a map with the true world when the run ends (map_quality.hpp), for the run's summary.
 class MapQualityComponent final : public Component {
@@ -83,15 +93,7 @@ class MapQualityComponent final : public Component {
       return;
     }
     try {
-      const MapQuality quality = judge(map_, MapTruth(drawn_world(*world), seeds_, params_.resolution));
-      const std::string figures = to_json(quality);
-      log().info("map quality: {}", figures);
-      if (run_folder().empty()) return;
-      std::string stem = name();
-      std::replace(stem.begin(), stem.end(), '/', '-');
-      std::ofstream file(run_folder() / ("figures-" + stem + ".json"));
-      file << figures << '\n';
-      if (!file.flush()) log().error("figures-{}.json could not be written in {}", stem, run_folder().string());
+      write_figures(figures_of(judge(map_, MapTruth(drawn_world(*world), seeds_, params_.resolution))));
     } catch (const std::invalid_argument& error) {
       log().error("the map cannot be judged: {}", error.what());
     }

@@ -1,12 +1,14 @@
-// kervan draw: a world as a picture.
+// kervan draw: a world as a picture, or the plan of its walls as a map.
 #include <fstream>
 #include <iostream>
 #include <set>
 
 #include "components/observe/map_drawing.hpp"
+#include "components/observe/map_truth.hpp"
 #include "deploy/cli/resources.hpp"
 #include "deploy/cli/verbs.hpp"
 #include "framework/config/node.hpp"
+#include "framework/map_file/map_file.hpp"
 #include "sim/files/world_file.hpp"
 
 namespace kervan::cli {
@@ -59,6 +61,25 @@ observe::DrawnWorld drawn(const sim::World& world) {
   return drawn;
 }
 
+/// What stands on the plan of a building: segments and pictures, not the discs and boxes that it is furnished with. A
+/// cell is occupied if a wall passes through it or along its border.
+map_file::GridMap plan(const sim::World& world) {
+  constexpr double resolution = 0.05;
+  observe::DrawnWorld walls;
+  add(world.segments(), walls);
+  for (const sim::CellMap& map : world.bitmaps()) add(map.edges().segments(), walls);
+  const observe::MapTruth truth(walls, {}, resolution);
+  const grid::CellBox box = truth.cells().box();
+  map_file::GridMap map{{box.x * resolution, box.y * resolution, 0.0}, resolution, box.columns, box.rows, {}};
+  for (int y = box.y; y < box.y + box.rows; ++y)
+    for (int x = box.x; x < box.x + box.columns; ++x) {
+      const observe::TrueCell cell = truth.at({x, y});
+      const bool wall = cell == observe::TrueCell::occupied || cell == observe::TrueCell::border;
+      map.occupancy.push_back(wall ? std::int8_t{100} : std::int8_t{0});
+    }
+  return map;
+}
+
 /// "23 walls, 3 discs, 18 boxes", without what there is none of.
 std::string contents(const sim::World& world) {
   std::string text;
@@ -79,6 +100,17 @@ std::string contents(const sim::World& world) {
 int draw(const DrawRequest& request) {
   const fs::path file = find_world(request.world);
   const sim::World world = sim::load_world(file.string());
+  if (!request.plan.empty()) {
+    if (fs::path(request.plan).extension() != ".yaml")
+      throw ConfigError({request.plan, 0, 0}, "a map of map_server ends with .yaml");
+    try {
+      map_file::save(plan(world), request.plan, map_file::Mode::trinary);
+    } catch (const std::invalid_argument& error) {
+      throw ConfigError({}, error.what());
+    }
+    std::cout << request.plan << '\n';
+    return exit_good;
+  }
   observe::MapDrawing drawing;
   drawing.title = world.name();
   drawing.subtitle = contents(world);

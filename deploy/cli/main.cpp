@@ -185,7 +185,13 @@ int dispatch(int argc, char** argv) {
   cli::DrawRequest draw;
   CLI::App* draw_verb = app.add_subcommand("draw", "Draw a world, or a map of ROS or ARIA, as an SVG picture.");
   draw_verb->add_option("world", draw.world, "name of a shipped world, or a file")->type_name("NAME|FILE")->required();
-  draw_verb->add_option("--out", draw.out, "file for the picture; else NAME.svg")->check(not_empty)->type_name("FILE");
+  auto* draw_out = draw_verb->add_option("--out", draw.out, "file for the picture; else NAME.svg")
+                       ->check(not_empty)
+                       ->type_name("FILE");
+  draw_verb->add_option("--plan", draw.plan, "no picture: the walls alone, as a map of map_server (.yaml) and its .png")
+      ->check(not_empty)
+      ->type_name("FILE")
+      ->excludes(draw_out);
 
   cli::SystemdRequest systemd;
   CLI::App* systemd_verb = app.add_subcommand("systemd", "Write the systemd units of a host's containers.");

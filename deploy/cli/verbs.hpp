@@ -63,6 +63,7 @@ struct ContainerAsk {
 struct DrawRequest {
   std::string world;  ///< a name or a file
   std::string out;    ///< the picture's file; empty: <name>.svg
+  std::string plan;   ///< not empty: no picture, but the world's walls as a map of map_server, in this file
 };
 
 struct SystemdRequest : CompositionRequest {

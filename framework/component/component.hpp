@@ -98,6 +98,10 @@ class Component {
   /// Where this run keeps its files; empty when nothing is to be written (tests, check).
   const std::filesystem::path& run_folder() const { return run_folder_; }
 
+  /// What the component has found out about the run, in SI units: becomes part of the run's summary.json under its
+  /// name, numbers rounded to the fourth decimal. For on_shutdown(); called again it replaces what was there.
+  void write_figures(const ValueMap& figures) const;
+
  private:
   friend class InputBase;
   friend class OutputBase;

@@ -68,6 +68,10 @@ const std::vector<Arrow> arrows = {
     {"components/localization/.*",
      {own_folder, "components/mapping/", "components/grid/", "framework/geometry/", "framework/component/time.hpp"},
      {"components/mapping/map_ports.hpp", "components/mapping/map_maker.hpp", "framework/geometry/messages.hpp"}},
+    // A frontier is worth driving to if a planner would find a way: both ask the same costmap.
+    {"components/exploration/frontier_map\\..*",
+     {own_folder, "components/planning/costmap.hpp", "components/grid/", "framework/geometry/"},
+     {"framework/geometry/messages.hpp", "components/grid/messages.hpp"}},
     // The certainty grid that repels a robot is filled as the mappers fill theirs.
     {"components/control/vff_component\\.cpp",
      {own_folder, "components/mapping/sonar_mapper.hpp", "framework/kervan.hpp", "framework/component/",
@@ -96,9 +100,11 @@ const std::vector<Arrow> arrows = {
 
     // The model knows manifests, not modules, and nothing that runs.
     {"deploy/composition/.*", {own_folder, "framework/component/", "framework/config/", "framework/geometry/"}},
-    // A picture of a world needs the world's reader and the drawing of a run's map, both plain libraries.
+    // A picture of a world needs the world's reader and the drawing of a run's map, the plan of its walls how a world
+    // becomes cells: plain libraries all.
     {"deploy/cli/draw\\.cpp",
-     {"deploy/", "framework/", "sim/files/world_file.hpp", "components/observe/map_drawing.hpp"}},
+     {"deploy/", "framework/", "sim/files/world_file.hpp", "components/observe/map_drawing.hpp",
+      "components/observe/map_truth.hpp"}},
     {"deploy/cli/.*", {"deploy/", "framework/", messages}},
     // The supervisor writes what containers read, and reads what they write.
     {"deploy/supervisor/.*", {own_folder, "deploy/container/", "deploy/composition/", "framework/", messages}},

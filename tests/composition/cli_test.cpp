@@ -163,6 +163,16 @@ TEST_F(Program, DrawsAWorldByItsNameOrFile) {
   EXPECT_NE(text.find("M0.0000,0.0000 L1.0000,0.0000"), std::string::npos);
 }
 
+TEST_F(Program, DrawsThePlanOfAWorldsWalls) {
+  std::ofstream(folder_ / "mine.yaml") << "kervan_world: 1\nname: mine\nsegments: [[[0 m, 0.02 m], [1 m, 0.02 m]]]\n"
+                                          "circles: [{center: [2 m, 2 m], radius: 0.5 m}]\n";
+  EXPECT_EQ(kervan("draw mine.yaml --plan plan.yaml").output, "plan.yaml\n");
+  EXPECT_TRUE(fs::exists(folder_ / "plan.yaml"));
+  EXPECT_TRUE(fs::exists(folder_ / "plan.png"));
+  expect_refused("draw mine.yaml --plan plan.png", "plan.png: a map of map_server ends with .yaml");
+  EXPECT_FALSE(kervan("draw mine.yaml --plan nowhere/plan.yaml").code == 0);
+}
+
 TEST_F(Program, RefusesToDrawWhatIsNoWorld) {
   expect_refused("draw",
                  "kervan draw: a world is missing; name a shipped one, such as lab, or a file; see kervan draw "

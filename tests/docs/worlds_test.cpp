@@ -39,6 +39,22 @@ TEST(Worlds, HaveThePictureThatTheProgramDraws) {
   EXPECT_EQ(names_of(".svg"), names_of(".yaml"));
 }
 
+TEST(Worlds, HaveThePlansThatTheProgramDraws) {
+  const Folder folder;
+  int plans = 0;
+  for (const auto& entry : fs::directory_iterator(worlds / "plans")) {
+    if (entry.path().extension() != ".yaml") continue;
+    ++plans;
+    const std::string name = entry.path().stem();
+    const auto drawn = run_line(KERVAN_PROGRAM, "draw " + name + " --plan " + name + ".yaml", folder.path());
+    ASSERT_EQ(drawn.code, 0) << drawn.err;
+    for (const char* ending : {".yaml", ".png"})
+      EXPECT_TRUE(text_of(folder.path() / (name + ending)) == text_of(worlds / "plans" / (name + ending)))
+          << "draw it: ./kervan draw " << name << " --plan " << entry.path();
+  }
+  EXPECT_EQ(plans, 4);
+}
+
 TEST(Worlds, AreOnTheirPageWithTheirPictures) {
   const std::string page = text_of(worlds / "README.md");
   for (const std::string& name : names_of(".yaml")) {
