@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 namespace kervan::planning {
 namespace {
@@ -53,13 +54,14 @@ constexpr unsigned step_buckets = 13;  // 2^13: a sixth of a straight move
 
 const std::uint8_t* canonical_moves() { return canonical_table.data(); }
 
+/// S max(dx, dy) + (D - S) min(dx, dy), written as D/2 (dx + dy) + (S - D/2) |dx - dy|: nothing in it has to be
+/// guessed.
 std::uint64_t GridSearch::to_goal(std::uint32_t place) const {
-  constexpr std::uint32_t straight = straight_cost * Costmap::lightest,
-                          slanting = (diagonal_cost - straight_cost) * Costmap::lightest;
-  static_assert((std::uint64_t{straight} + slanting) * Costmap::widest < (std::uint64_t{1} << 32));
-  const auto dx = static_cast<std::uint32_t>(std::abs(static_cast<int>(place & 0xffffu) - goal_.x)),
-             dy = static_cast<std::uint32_t>(std::abs(static_cast<int>(place >> 16) - goal_.y));
-  return straight * std::max(dx, dy) + slanting * std::min(dx, dy);
+  constexpr std::uint64_t both = diagonal_cost * Costmap::lightest / 2,
+                          apart = straight_cost * Costmap::lightest - both;
+  const int dx = std::abs(static_cast<int>(place & 0xffffu) - goal_.x),
+            dy = std::abs(static_cast<int>(place >> 16) - goal_.y);
+  return both * static_cast<std::uint32_t>(dx + dy) + apart * static_cast<std::uint32_t>(std::abs(dx - dy));
 }
 
 void GridSearch::begin(const Costmap& map, SearchRule rule) {
@@ -85,57 +87,140 @@ Reached GridSearch::find(const Costmap& map, Cell start, Cell goal, SearchRule r
   return rule == SearchRule::canonical ? walk<true>(map, most_expanded) : walk<false>(map, most_expanded);
 }
 
+/// A*. A neighbour that would be the next one out of the queue is kept in hand instead, so that a way straight on is
+/// followed without it.
 template <bool canonical>
-Reached GridSearch::walk(const Costmap& map, std::size_t most_expanded) {
-  const std::uint16_t* const infos = map.infos();
-  const std::uint32_t goal = map.index(goal_.x, goal_.y), first = map.index(start_.x, start_.y);
-  std::array<std::uint32_t, directions> offsets, steps;
-  for (unsigned d = 0; d < directions; ++d) {
-    offsets[d] = static_cast<std::uint32_t>(step_x[d] + step_y[d] * static_cast<int>(map.stride()));
-    steps[d] = BucketQueue::place_of(step_x[d], step_y[d]);
-  }
-  constexpr std::array<std::uint64_t, 2> costs = {straight_cost, diagonal_cost};
-
-  labels_[first] = label(0, from_nowhere);
-  const std::uint32_t place = BucketQueue::place_of(start_.x, start_.y);
-  const std::uint64_t f = to_goal(place);
-  open_.begin(f, step_buckets, widest_step);
-  open_.push(f, first, 0, place);
-  BucketQueue::Entry entry, in_hand{};
-  bool held = false;
-  while (held || open_.pop(entry, goal_cost_)) {
-    if (held) entry = in_hand;
-    held = false;
-    const Label here = labels_[entry.cell];
-    const std::uint64_t g = cost_of(here);
-    if (static_cast<std::uint32_t>(g) != entry.g) continue;  // a cheaper way was found after it had been queued
-    if (entry.cell == goal) {
-      goal_cost_ = g;
-      continue;
+class GridSearch::Walk {
+ public:
+  Walk(GridSearch& search, const Costmap& map)
+      : search_(search),
+        infos_(map.infos()),
+        labels_(search.labels_.data()),
+        stride_(map.stride()),
+        goal_(map.index(search.goal_.x, search.goal_.y)),
+        open_(std::move(search.open_)) {
+    for (unsigned d = 0; d < directions; ++d) {
+      offsets_[d] = static_cast<std::uint32_t>(step_x[d] + step_y[d] * static_cast<int>(map.stride()));
+      places_[d] = BucketQueue::place_of(step_x[d], step_y[d]);
     }
-    if (goal_cost_ != unknown_cost && g + to_goal(entry.place) >= goal_cost_) continue;
-    if (++expanded_ > most_expanded && most_expanded != 0) return Reached::gave_up;
-    const unsigned info = infos[entry.cell];
-    const MoveTable& table = canonical && (info & Costmap::flat) != 0 ? canonical_table : onward_table;
-    unsigned moves = table[direction_of(here) * 256 + (info & 0xffu)];
+  }
+  ~Walk() { search_.open_ = std::move(open_); }
+
+  Walk(const Walk&) = delete;
+  Walk& operator=(const Walk&) = delete;
+
+  Reached from(std::uint32_t first, std::uint32_t place, std::size_t most_expanded) {
+    const std::uint64_t f = search_.to_goal(place);
+    labels_[first] = search_.label(0, from_nowhere);
+    open_.begin(f, step_buckets, widest_step);
+    open_.push(f, first, 0, place);
+    BucketQueue::Entry entry;
+    while (open_.pop(entry, goal_cost_)) {
+      const Label here = labels_[entry.cell];
+      const std::uint64_t g = cost_of(here);
+      if (static_cast<std::uint32_t>(g) != entry.g) continue;  // a cheaper way was found after it had been queued
+      now_ = {entry.cell, entry.place, g, direction_of(here)};
+      do {
+        if (now_.cell == goal_) {
+          goal_cost_ = now_.g;
+          break;
+        }
+        if (goal_cost_ != unknown_cost && now_.g + search_.to_goal(now_.place) >= goal_cost_) break;
+        if (++search_.expanded_ > most_expanded && most_expanded != 0) return Reached::gave_up;
+      } while (expand());
+    }
+    search_.goal_cost_ = goal_cost_;
+    return goal_cost_ == unknown_cost ? Reached::no_path : Reached::goal;
+  }
+
+ private:
+  struct Visit {
+    std::uint32_t cell, place;
+    std::uint64_t g;
+    unsigned direction;
+  };
+
+  /// True if one of the neighbours is in hand now.
+  bool expand() {
+    const unsigned info = infos_[now_.cell], allowed = info & 0xffu;
+    const Visit here = now_;
+    if ((info & Costmap::flat) == 0) return look_at_all(here, onward_table[here.direction * 256 + allowed]);
+    const unsigned weight = info >> Costmap::weight_shift;
+    const std::array<std::uint64_t, 2> costs = {here.g + straight_cost * weight, here.g + diagonal_cost * weight};
+    if constexpr (!canonical) return enter_better(here, allowed, costs);
+    const unsigned moves = canonical_table[here.direction * 256 + allowed];
+    if (moves == 1u << here.direction) return look_at(here, here.direction, costs[here.direction & 1u], false);
+    bool held = false;
+    for (unsigned left = moves; left != 0; left &= left - 1) {
+      const auto d = static_cast<unsigned>(std::countr_zero(left));
+      held = look_at(here, d, costs[d & 1u], held) || held;
+    }
+    return held;
+  }
+
+  bool look_at_all(const Visit& here, unsigned moves) {
+    constexpr std::array<std::uint64_t, 2> costs = {straight_cost, diagonal_cost};
+    bool held = false;
     for (; moves != 0; moves &= moves - 1) {
       const auto d = static_cast<unsigned>(std::countr_zero(moves));
-      const std::uint32_t next = entry.cell + offsets[d];
-      const std::uint64_t cost = g + costs[d & 1u] * (infos[next] >> Costmap::weight_shift);
-      const Label better = label(cost, d);
-      if ((better | direction_bits) >= labels_[next]) continue;
-      labels_[next] = better;
-      const std::uint32_t place_there = entry.place + steps[d];
-      const std::uint64_t f_there = cost + to_goal(place_there);
-      if (!held && open_.next_out(f_there)) {
-        in_hand = {next, static_cast<std::uint32_t>(cost), place_there, 0};
-        held = true;
-      } else {
-        open_.push(f_there, next, cost, place_there);
-      }
+      const unsigned weight = infos_[here.cell + offsets_[d]] >> Costmap::weight_shift;
+      held = look_at(here, d, here.g + costs[d & 1u] * weight, held) || held;
     }
+    return held;
   }
-  if (goal_cost_ == unknown_cost) return Reached::no_path;
+
+  /// All eight labels are compared before anything depends on one of them.
+  bool enter_better(const Visit& here, unsigned moves, const std::array<std::uint64_t, 2>& costs) {
+    const Label straight = search_.label(costs[0], 0) | direction_bits,
+                slanting = search_.label(costs[1], 0) | direction_bits;
+    const Label *const row = labels_ + here.cell, *const up = row + stride_, *const down = row - stride_;
+    const unsigned better = unsigned{straight < row[1]} | unsigned{slanting < up[1]} << 1 |
+                            unsigned{straight < up[0]} << 2 | unsigned{slanting < up[-1]} << 3 |
+                            unsigned{straight < row[-1]} << 4 | unsigned{slanting < down[-1]} << 5 |
+                            unsigned{straight < down[0]} << 6 | unsigned{slanting < down[1]} << 7;
+    bool held = false;
+    for (unsigned left = moves & better; left != 0; left &= left - 1) {
+      const auto d = static_cast<unsigned>(std::countr_zero(left));
+      held = enter(here, d, costs[d & 1u], held) || held;
+    }
+    return held;
+  }
+
+  bool look_at(const Visit& here, unsigned d, std::uint64_t cost, bool held) {
+    if ((search_.label(cost, d) | direction_bits) >= labels_[here.cell + offsets_[d]]) return false;
+    return enter(here, d, cost, held);
+  }
+
+  /// True if the cell is in hand now, which needs it to be empty: not `held`.
+  bool enter(const Visit& here, unsigned d, std::uint64_t cost, bool held) {
+    const std::uint32_t cell = here.cell + offsets_[d], place = here.place + places_[d];
+    labels_[cell] = search_.label(cost, d);
+    const std::uint64_t f = cost + search_.to_goal(place);
+    if (!held && open_.next_out(f)) {
+      now_ = {cell, place, cost, d};
+      return true;
+    }
+    open_.push(f, cell, cost, place);
+    return false;
+  }
+
+  GridSearch& search_;
+  const std::uint16_t* infos_;
+  Label* labels_;
+  std::ptrdiff_t stride_;
+  std::uint32_t goal_;
+  std::array<std::uint32_t, directions> offsets_, places_;
+  BucketQueue open_;
+  std::uint64_t goal_cost_ = unknown_cost;
+  Visit now_{};
+};
+
+template <bool canonical>
+Reached GridSearch::walk(const Costmap& map, std::size_t most_expanded) {
+  const Reached reached =
+      Walk<canonical>(*this, map)
+          .from(map.index(start_.x, start_.y), BucketQueue::place_of(start_.x, start_.y), most_expanded);
+  if (reached != Reached::goal) return reached;
   cost_ = static_cast<double>(goal_cost_) / static_cast<double>(straight_cost * Costmap::lightest);
   trace_steps(map);
   return Reached::goal;

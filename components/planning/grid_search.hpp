@@ -73,6 +73,8 @@ class GridSearch {
   std::uint64_t to_goal(std::uint32_t place) const;
   void begin(const Costmap& map, SearchRule rule);
   template <bool canonical>
+  class Walk;
+  template <bool canonical>
   Reached walk(const Costmap& map, std::size_t most_expanded);
   Reached jump(const Costmap& map, std::size_t most_expanded);
   void jump_straight(const Costmap& map, const BucketQueue::Entry& from, unsigned direction, std::uint64_t cost, int x,
@@ -80,6 +82,7 @@ class GridSearch {
   void jump_diagonally(const Costmap& map, const BucketQueue::Entry& from, unsigned direction, std::uint64_t cost);
   void reach(std::uint32_t parent, std::uint32_t cell, int x, int y, std::uint64_t cost, unsigned direction);
   void trace_steps(const Costmap& map);
+  bool lies_open(const Costmap& map);
   void trace_jumps(const Costmap& map);
 
   std::vector<Label> labels_;

@@ -96,12 +96,38 @@ void GridSearch::jump_diagonally(const Costmap& map, const BucketQueue::Entry& f
   }
 }
 
+/// True if nothing is on the way that is diagonal first: none is shorter, and there is nothing to search.
+bool GridSearch::lies_open(const Costmap& map) {
+  Cell at = start_;
+  std::uint32_t cell = map.index(at.x, at.y);
+  const unsigned d = goal_.y > at.y ? (goal_.x > at.x ? 1 : 3) : (goal_.x > at.x ? 7 : 5);
+  const auto offset = static_cast<std::uint32_t>(step_x[d] + step_y[d] * static_cast<int>(map.stride()));
+  for (; at.x != goal_.x && at.y != goal_.y; at = {at.x + step_x[d], at.y + step_y[d]}, cell += offset)
+    if ((map.infos()[cell] >> d & 1u) == 0) return false;
+  const bool along_row = at.y == goal_.y;
+  const BlockedBits& bits = along_row ? map.row_bits() : map.column_bits();
+  const int line = along_row ? at.y : at.x;
+  const auto [begin, last] = along_row ? std::minmax(at.x, goal_.x) : std::minmax(at.y, goal_.y);
+  for (int first = begin; first <= last; first += at_once) {
+    const std::uint64_t asked = these >> (at_once - std::min(at_once, last - first + 1));
+    if ((bits.bits_from(line, first) & asked) != 0) return false;
+  }
+  return true;
+}
+
 Reached GridSearch::jump(const Costmap& map, std::size_t most_expanded) {
   const std::uint32_t goal = map.index(goal_.x, goal_.y), first = map.index(start_.x, start_.y);
   labels_[first] = label(0, from_nowhere);
   parents_[first] = first;
   const std::uint32_t place = BucketQueue::place_of(start_.x, start_.y);
   const std::uint64_t f = to_goal(place);
+  if (lies_open(map)) {
+    parents_[goal] = first;
+    expanded_ = 1;
+    cost_ = static_cast<double>(f) / static_cast<double>(straight);
+    trace_jumps(map);
+    return Reached::goal;
+  }
   // A jump is a diagonal and a straight line; f grows by at most twice its cost.
   open_.begin(f, jump_buckets, 2 * diagonal * static_cast<std::uint64_t>(map.columns() + map.rows()));
   open_.push(f, first, 0, place);

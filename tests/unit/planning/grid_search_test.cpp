@@ -91,6 +91,26 @@ TEST(GridSearch, JumpsAlongLinesLongerThanAWindowOfBits) {
     }
 }
 
+TEST(GridSearch, SearchesNothingForAGoalInSight) {
+  std::mt19937 random(3);
+  grid::Occupancy cells(1.0, -1, 1 << 20);
+  const grid::CellBox box{0, 0, 150, 130};
+  cells.cover(box);
+  const Costmap open = test::bare_costmap(cells, box);
+  GridSearch search;
+  for (int i = 0; i < 50; ++i) {
+    const Cell start = test::random_free_cell(random, open), goal = test::random_free_cell(random, open);
+    expect_cheapest(open, search, start, goal, SearchRule::jump_point);
+    EXPECT_LE(search.expanded(), 1u);
+  }
+  // One obstacle on the last cell but one of a line, and there is something to search for.
+  *cells.place({118, 20}) = 100;
+  cells.touch({118, 20, 1, 1});
+  const Costmap map = test::bare_costmap(cells, box);
+  expect_cheapest(map, search, {1, 21}, {120, 21}, SearchRule::jump_point);
+  EXPECT_GT(search.expanded(), 1u);
+}
+
 TEST(GridSearch, CutsNoCorner) {
   const std::vector<std::string> lines = {"..#",  //
                                           "#..",  //
