@@ -130,8 +130,9 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
   expect_refused(
       "check lab --explain /r1/sonra",
       "--explain /r1/sonra: lab has no such topic; did you mean '/r1/sonar'? it has: /clock, /moving, /outline, "
-      "/r1/arbitration, /r1/clearance, /r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, /r1/odom, "
-      "/r1/route, /r1/sonar, /r1/truth, /r1/waypoint, /result, /tf, /tiles");
+      "/r1/arbitration, /r1/clearance, /r1/cmd_vel, /r1/cmd_vel_raw, /r1/contact, /r1/force, /r1/goal, "
+      "/r1/goal_status, /r1/goals, /r1/odom, /r1/replan, /r1/route, /r1/sonar, /r1/truth, /r1/waypoint, /result, /tf, "
+      "/tiles");
 }
 
 TEST_F(Program, RefusesAMalformedWorldAtItsPlaceAndWritesNothing) {
