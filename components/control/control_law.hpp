@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "framework/geometry/pose2.hpp"
+#include "framework/geometry/scan.hpp"
 
 namespace kervan::control {
 
@@ -11,6 +12,12 @@ namespace kervan::control {
 struct RobotState {
   geometry::Pose2 pose = {};    ///< in a frame that target and obstacles share
   geometry::Twist2 twist = {};  ///< with which it moves
+};
+
+/// A scan, and where the laser was when it was taken, in the frame of the robot's pose.
+struct PlacedScan {
+  geometry::Pose2 laser;
+  geometry::Scan scan;
 };
 
 /// What of these no law can work with; empty: nothing.

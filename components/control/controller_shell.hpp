@@ -22,6 +22,14 @@ struct Controlled {
   geometry::Twist2 twist = {};
   Outcome outcome = Outcome::drives;
   std::string why = {};  ///< as Steering has it; a fault names the input that it is about
+
+  Controlled() = default;
+  Controlled(const geometry::Twist2& command) : twist(command) {}
+  /// `input`: that a fault is about.
+  Controlled(const Steering& steering, const std::string& input) : twist(steering.twist), outcome(steering.outcome) {
+    if (outcome == Outcome::fault) why = input + ": ";
+    why += steering.why;
+  }
 };
 
 /// Of a controller that looks at no obstacles.
@@ -77,6 +85,8 @@ class ControllerShell<Params, NoObstacles> : public Component {
     const geometry::Vector2 target = geometry::position_of(waypoint_.latest()->pose);
     if (!robot.pose.position().allFinite() || !std::isfinite(robot.pose.yaw))
       return stand(now, "odom: the pose is not finite");
+    if (!std::isfinite(robot.twist.linear) || !std::isfinite(robot.twist.angular))
+      return stand(now, "odom: the speed is not finite");
     if (!target.allFinite()) return stand(now, "waypoint: the position is not finite");
     if (std::string why = unready(); !why.empty()) return stand(now, std::move(why));
 
@@ -111,18 +121,22 @@ class ControllerShell<Params, NoObstacles> : public Component {
   }
 };
 
-/// The port of a message about obstacles.
+/// The port of a message about obstacles, and why one is of no use to any law; empty if it is.
 template <class Message>
 struct ObstaclePort;
 
 template <>
 struct ObstaclePort<kervan_msgs::msg::SonarArray> {
   static constexpr const char *name = "sonar", *help = "Obstacles around the robot.";
+  static std::string useless(const kervan_msgs::msg::SonarArray&) { return {}; }
 };
 
 template <>
 struct ObstaclePort<sensor_msgs::msg::LaserScan> {
   static constexpr const char *name = "scan", *help = "What the laser measures.";
+  static std::string useless(const sensor_msgs::msg::LaserScan& scan) {
+    return geometry::possible(geometry::scan_of(scan)) ? "" : "its angles or limits are none";
+  }
 };
 
 template <class Params, class Obstacles>
@@ -131,11 +145,11 @@ class ControllerShell : public ControllerShell<Params, NoObstacles> {
 
  protected:
   /// A message came, with base_link at `robot`. Returns why it is of no use; empty if it is.
-  virtual std::string hear(const Obstacles& obstacles, const geometry::Pose2& robot) = 0;
+  virtual std::string hear(const Obstacles&, const geometry::Pose2& /*robot*/) { return {}; }
   /// A message came while the robot did not know where it was.
   virtual void forget() {}
 
-  /// The last message, and where base_link was when it came; in control() there is one, and hear() found it of use.
+  /// The last message, and where base_link was when it came; in control() there is one, and it is of use.
   const Obstacles& heard() const { return *obstacles_.latest(); }
   const geometry::Pose2& heard_at() const { return heard_at_; }
 
@@ -150,7 +164,8 @@ class ControllerShell : public ControllerShell<Params, NoObstacles> {
   void on_obstacles(const Obstacles& obstacles, Time) {
     if (const auto* odometry = this->odometry()) {
       heard_at_ = geometry::pose_of(odometry->pose.pose);
-      unheard_ = hear(obstacles, heard_at_);
+      unheard_ = Port::useless(obstacles);
+      if (unheard_.empty()) unheard_ = hear(obstacles, heard_at_);
     } else {
       unheard_ = "heard while the robot did not know where it was";
       forget();

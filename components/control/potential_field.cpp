@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "components/control/heading_drive.hpp"
+
 namespace kervan::control {
 namespace {
 
@@ -48,8 +50,7 @@ geometry::Twist2 drive_along(const ForceDriveParams& params, const Force& force,
   const double error = geometry::angle_between(yaw, std::atan2(force.total.y(), force.total.x()));
   double v = params.speed * std::min(1.0, strength / params.full_force) * std::max(0.0, std::cos(error));
   if (force.rho) {
-    const double room = std::max(0.0, *force.rho - params.stop_distance);
-    v = std::min(v, std::sqrt(2.0 * params.braking * room));
+    v = std::min(v, stopping_speed(*force.rho - params.stop_distance, params.braking));
   }
   return {v, std::clamp(params.turn_gain * error, -params.turn_rate, params.turn_rate)};
 }

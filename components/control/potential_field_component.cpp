@@ -101,7 +101,7 @@ class PotentialFieldComponent final : public ControllerShell<PotentialFieldParam
   Controlled control(Time now, const RobotState& robot, const geometry::Vector2& target) override {
     const Force force = force_at(params_.force, robot.pose.position(), target, obstacle_);
     display_.show(now, frame(), robot.pose.position(), force.attraction, force.repulsion);
-    return {drive_along(params_.drive, force, robot.pose.yaw)};
+    return drive_along(params_.drive, force, robot.pose.yaw);
   }
 };
 

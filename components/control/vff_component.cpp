@@ -116,12 +116,12 @@ class VffComponent final : public ControllerShell<VffComponentParams, kervan_msg
 
   Controlled control(Time now, const RobotState& robot, const geometry::Vector2& target) override {
     const geometry::Vector2 position = robot.pose.position();
-    if (!grid::has_cell(position)) return {{}, Outcome::fault, "odom: the robot is too far away from its origin"};
+    if (!grid::has_cell(position))
+      return {Steering{Outcome::fault, "the robot is too far away from its origin"}, "odom"};
     cut_window(*grid_.certainties(), position, window_);
     const VffStep step = field_.step(robot, target, window_);
-    if (step.outcome == Outcome::fault) return {{}, step.outcome, "odom: " + std::string(step.why)};
-    display_.show(now, frame(), position, step.attraction, step.damped);
-    return {step.twist};
+    if (step.outcome != Outcome::fault) display_.show(now, frame(), position, step.attraction, step.damped);
+    return {step, "odom"};
   }
 };
 

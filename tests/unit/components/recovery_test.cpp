@@ -140,11 +140,12 @@ TEST(Recovery, NoticesThatItGoesRoundAndRoundOrToAndFro) {
 TEST(Recovery, FollowsTheWallOfATrapUntilItsTargetIsAheadAgain) {
   Robot robot;
   robot.room.left = 0.6;
-  for (int i = 0; i < 2000 && robot.recovery.manoeuvre() != Rung::follow_wall; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     // Along a wall at its left, away from the target; what it is to back up does not help.
     robot.pose = {-0.005 * i, 0.0, pi};
     robot.step({0.05, 0.0});
     while (robot.recovery.manoeuvre() == Rung::back_up) robot.step({0.05, 0.0});
+    if (robot.recovery.manoeuvre() == Rung::follow_wall) break;
   }
   ASSERT_EQ(robot.recovery.manoeuvre(), Rung::follow_wall);
   EXPECT_EQ(robot.why, "the robot drives away from its target");

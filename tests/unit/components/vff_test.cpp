@@ -7,8 +7,6 @@
 #include <limits>
 #include <numbers>
 
-#include "tests/unit/allocations.hpp"
-
 namespace kervan::control {
 namespace {
 
@@ -220,22 +218,6 @@ TEST(Vff, CutsAnEmptyWindowFarFromTheGrid) {
   cut_window(cells, {1e6, -1e6}, window);
   EXPECT_EQ(std::count(window.cells.begin(), window.cells.end(), 0), static_cast<int>(window_cells));
   EXPECT_EQ(VirtualForceField({}).step({{1e6, -1e6, 0.0}}, {9.0, 0.0}, window).why, "");
-}
-
-TEST(Vff, AStepAllocatesNothing) {
-  grid::Grid<grid::Certainty> cells(0.1, {}, std::size_t{1} << 20);
-  ASSERT_EQ(cells.cover({-64, -64, 128, 128}), grid::Growth::grown);
-  cells.place({9, 1})->raise();
-  VirtualForceField field({});
-  CertaintyWindow window;
-  const std::size_t before = test::allocations();
-  double turned = 0.0;
-  for (int i = 0; i < 10; ++i) {
-    cut_window(cells, {0.05, 0.05}, window);
-    turned += field.step({{0.05, 0.05, 0.0}, {0.5, 0.0}}, {9.0, 0.0}, window).twist.angular;
-  }
-  EXPECT_EQ(test::allocations() - before, 0u);
-  EXPECT_LT(turned, 0.0) << "away from the cell, ahead to the left";
 }
 
 }  // namespace
