@@ -16,6 +16,7 @@ install(FILES
 # The data that the program looks up in share/kervan.
 install(DIRECTORY
   ${PROJECT_SOURCE_DIR}/deploy/compositions
+  ${PROJECT_SOURCE_DIR}/deploy/lab/experiments
   ${PROJECT_SOURCE_DIR}/sim/worlds
   ${PROJECT_SOURCE_DIR}/sim/robots
   DESTINATION ${CMAKE_INSTALL_DATADIR}/kervan

@@ -67,6 +67,8 @@ Bounds bounds_of(const MapDrawing& drawing, const grid::Picture& map) {
   for (const auto& mover : drawing.movers)
     for (const auto& place : mover.places) bounds.add(place);
   bounds.add(drawing.nodes);
+  for (const auto& bundle : drawing.bundles)
+    for (const auto& path : bundle.paths) bounds.add(path);
   for (const auto& robot : drawing.robots) {
     bounds.add(robot.route);
     bounds.add(robot.truth);
@@ -224,6 +226,20 @@ double detail_reach(const DrawnRobot& robot) {
 
 bool has_detail(const DrawnRobot& robot) { return robot.goal && robot.goal->allFinite() && !robot.truth.empty(); }
 
+/// A path among many: thin, and darker where several lie on each other.
+void draw_strand(WorldLayer& layer, const Polyline& path, const char* colour) {
+  layer.line(path, colour, 1.3, {}, "0.55");
+}
+
+void draw_bundle(WorldLayer& layer, const DrawnBundle& bundle, const char* colour, double tolerance) {
+  for (const auto& path : bundle.paths) draw_strand(layer, simplified(path, tolerance), colour);
+  for (const auto& path : bundle.paths) {
+    if (path.empty()) continue;
+    layer.circle(path.front(), 2.6 * layer.px(), "#ffffff", colour, 1.4);
+    layer.circle(path.back(), 2.6 * layer.px(), colour, "#ffffff", 0.8);
+  }
+}
+
 void draw_map(SvgWriter& svg, const MapDrawing& drawing, const grid::Picture& map, const Bounds& bounds, double px) {
   svg.element("rect", {{"x", metres(bounds.low.x())},
                        {"y", metres(-bounds.high.y())},
@@ -249,6 +265,8 @@ void draw_map(SvgWriter& svg, const MapDrawing& drawing, const grid::Picture& ma
 
   const double tolerance = px / 3.0;  // a third of a pixel
   for (const auto& mover : drawing.movers) draw_mover(layer, mover, tolerance);
+  for (std::size_t i = 0; i < drawing.bundles.size(); ++i)
+    draw_bundle(layer, drawing.bundles[i], colour_of(i), tolerance);
 
   for (std::size_t i = 0; i < drawing.nodes.size(); ++i)
     if (!on_a_route(drawing, drawing.nodes[i])) draw_node(layer, drawing.nodes[i], i);
@@ -457,6 +475,25 @@ double draw_legend(SvgWriter& svg, const MapDrawing& drawing, double top) {
   return y;
 }
 
+/// The labels of the bundles from (margin, top) downwards, in three columns, page pixels. Returns where they end.
+double draw_bundle_labels(SvgWriter& svg, const std::vector<DrawnBundle>& bundles, double top) {
+  WorldLayer layer(svg, 1.0);
+  double y = top;
+  for (std::size_t i = 0; i < bundles.size(); ++i) {
+    const double x = margin + 310.0 * static_cast<double>(i % 3);
+    if (i % 3 == 0) y += line_height;
+    layer.line({{x + 2.0, -(y - 4.0)}, {x + 30.0, -(y - 4.0)}}, colour_of(i), 3.0);
+    svg.text(bundles[i].label, {{"x", pixels(x + 40.0)}, {"y", pixels(y)}, {"font-size", "12"}, {"fill", ink}});
+  }
+  return y;
+}
+
+/// Everything below the map, from `top` downwards. Returns where it ends.
+double draw_foot(SvgWriter& svg, const MapDrawing& drawing, double top) {
+  if (!drawing.bundles.empty()) top = draw_bundle_labels(svg, drawing.bundles, top);
+  return drawing.robots.empty() ? top : draw_legend(svg, drawing, draw_figures(svg, drawing, top) + 4.0);
+}
+
 }  // namespace
 
 std::string to_svg(const MapDrawing& drawing) {
@@ -467,9 +504,8 @@ std::string to_svg(const MapDrawing& drawing) {
 
   // The foot of the page is laid out first, because the page's height depends on it.
   SvgWriter foot;
-  const double text_bottom = drawing.robots.empty()
-                                 ? map_bottom - margin
-                                 : draw_legend(foot, drawing, draw_figures(foot, drawing, map_bottom - 6.0) + 4.0);
+  const bool labelled = !drawing.robots.empty() || !drawing.bundles.empty();
+  const double text_bottom = labelled ? draw_foot(foot, drawing, map_bottom - 6.0) : map_bottom - margin;
   std::vector<std::size_t> details;
   for (std::size_t i = 0; i < drawing.robots.size() && drawing.robots.size() <= most_details; ++i)
     if (has_detail(drawing.robots[i])) details.push_back(i);

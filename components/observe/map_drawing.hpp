@@ -55,6 +55,12 @@ struct DrawnRobot {
   std::vector<std::pair<std::string, std::string>> figures;  ///< label and value, shown beside the map
 };
 
+/// Paths of many runs that have something in common, in one colour.
+struct DrawnBundle {
+  std::string label;
+  std::vector<Polyline> paths;
+};
+
 struct MapDrawing {
   std::string title;
   std::string result;    ///< "success", "failed", "aborted", or empty; shown in its colour beside the title
@@ -64,7 +70,8 @@ struct MapDrawing {
   std::optional<grid::Occupancy> map;  ///< that was made, drawn below everything else; the world is then outlined only
   Polyline
       nodes;  ///< of the waypoint graph, drawn with their numbers; when empty, those of up to three robots' routes are
-  std::vector<DrawnRobot> robots;  ///< none: the picture of a world, without a legend
+  std::vector<DrawnBundle> bundles;  ///< drawn thin, each with its label below the map
+  std::vector<DrawnRobot> robots;    ///< none: the picture of a world, without a legend
 };
 
 /// The drawing as one self-contained SVG document, 1000 px wide. Its viewBox is in metres; because y points down in

@@ -5,6 +5,7 @@
 
 #include "components/observe/map_drawing.hpp"
 #include "components/observe/map_truth.hpp"
+#include "deploy/cli/drawn_world.hpp"
 #include "deploy/cli/resources.hpp"
 #include "deploy/cli/verbs.hpp"
 #include "framework/config/node.hpp"
@@ -34,41 +35,10 @@ fs::path find_world(const std::string& name_or_file) {
                             config::hint(name_or_file, {known.begin(), known.end()}, "there are"));
 }
 
-void add(std::span<const sim::Segment> segments, observe::DrawnWorld& drawn) {
-  for (const sim::Segment& segment : segments) drawn.walls.push_back({segment.a, segment.b});
-}
-
-void add(const sim::Solids& solids, observe::DrawnWorld& drawn) {
-  add(solids.segments(), drawn);
-  for (const sim::Circle& circle : solids.circles()) drawn.circles.push_back({circle.center, circle.radius});
-  for (const sim::Box& box : solids.boxes()) {
-    const auto corners = sim::corners(box);
-    drawn.polygons.emplace_back(corners.begin(), corners.end());
-  }
-}
-
-/// What moves is drawn where it is at the start.
-observe::DrawnWorld drawn(const sim::World& world) {
-  observe::DrawnWorld drawn;
-  add(world.tall(), drawn);
-  add(world.low(), drawn);
-  for (const sim::CellMap& map : world.bitmaps()) add(map.edges().segments(), drawn);
-  for (const sim::MovingObstacle& obstacle : world.moving()) {
-    observe::Polyline corners;
-    for (const auto& corner : obstacle.outline.corners()) corners.push_back(obstacle.path.front().pose * corner);
-    drawn.polygons.push_back(std::move(corners));
-  }
-  return drawn;
-}
-
-/// What stands on the plan of a building: segments and pictures, not the discs and boxes that it is furnished with. A
-/// cell is occupied if a wall passes through it or along its border.
+/// A cell is occupied if a wall passes through it or along its border.
 map_file::GridMap plan(const sim::World& world) {
   constexpr double resolution = 0.05;
-  observe::DrawnWorld walls;
-  add(world.segments(), walls);
-  for (const sim::CellMap& map : world.bitmaps()) add(map.edges().segments(), walls);
-  const observe::MapTruth truth(walls, {}, resolution);
+  const observe::MapTruth truth(drawn_plan(world), {}, resolution);
   const grid::CellBox box = truth.cells().box();
   map_file::GridMap map{{box.x * resolution, box.y * resolution, 0.0}, resolution, box.columns, box.rows, {}};
   for (int y = box.y; y < box.y + box.rows; ++y)

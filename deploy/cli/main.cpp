@@ -12,7 +12,7 @@ using namespace kervan;
 
 namespace {
 
-const std::vector<std::string> verbs = {"run", "check", "describe", "draw", "container", "systemd"};
+const std::vector<std::string> verbs = {"run", "sweep", "check", "describe", "draw", "container", "systemd"};
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
@@ -23,6 +23,11 @@ void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
       ->required();
   verb.add_option("--arg", request.arguments, "value of one of the composition's arguments; may be repeated")
       ->type_name("NAME=VALUE")
+      ->check(not_empty)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--set", request.settings, "value of a component's parameter, over the file's; may be repeated")
+      ->type_name("COMPONENT.params.NAME=VALUE")
       ->check(not_empty)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -131,6 +136,7 @@ std::string reason(const CLI::ParseError& error, const CLI::App& app) {
     return app.get_subcommand("container")->get_subcommands().empty()
                ? "what to ask is missing: list, state, load, unload, activate, deactivate, set, call or snapshot"
                : error.what();
+  if (app.got_subcommand("sweep")) return "a sweep is missing; name a shipped one, or a file";
   if (app.got_subcommand("draw")) return "a world is missing; name a shipped one, such as lab, or a file";
   return "a composition is missing; name a shipped one, such as lab, or a file";
 }
@@ -159,10 +165,26 @@ int dispatch(int argc, char** argv) {
                    "show in map.svg what each robot's sensors saw at the start and every so often, e.g. 5s")
       ->check(not_empty)
       ->type_name("TIME");
-  run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
-      ->capture_default_str()
+  CLI::Option* runs = run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
+                          ->capture_default_str()
+                          ->check(not_empty)
+                          ->type_name("DIR");
+  run_verb->add_option("--out", run.run_folder, "folder for this run itself, empty or not there yet")
+      ->check(not_empty)
+      ->excludes(runs)
+      ->type_name("DIR");
+
+  cli::SweepRequest sweep;
+  CLI::App* sweep_verb =
+      app.add_subcommand("sweep", "Run a composition many times, as a file says, and compare what came of it.");
+  sweep_verb->add_option("sweep", sweep.file, "name of a shipped sweep, or a file")->type_name("NAME|FILE")->required();
+  sweep_verb->add_option("--out", sweep.out, "folder for runs and report; else sweeps/NAME")
       ->check(not_empty)
       ->type_name("DIR");
+  sweep_verb->add_option("--jobs", sweep.jobs, "runs at a time, 1 to 256; else as many as there are cores")
+      ->check(not_empty)
+      ->type_name("N");
+  sweep_verb->add_flag("--json", sweep.json, "print the result as one JSON object, on the last line");
 
   cli::CheckRequest check;
   CLI::App* check_verb = app.add_subcommand("check", "Check a composition without running it.");
@@ -222,6 +244,7 @@ int dispatch(int argc, char** argv) {
 
   try {
     if (*run_verb) return cli::run(run);
+    if (*sweep_verb) return cli::sweep(sweep);
     if (*check_verb) return cli::check(check);
     if (*draw_verb) return cli::draw(draw);
     if (*systemd_verb) return cli::systemd(systemd);

@@ -77,7 +77,7 @@ RunOutcome judge(const supervisor::SupervisedRun& run) {
   outcome.containers = run.containers;
   outcome.wall_s = run.wall_s;
   outcome.signal = run.signal;
-  const std::string failed = failures(run);
+  const std::string failed = outcome.failures = failures(run);
   for (const EndReport& report : run.reports) outcome.simulated_s = std::max(outcome.simulated_s, report.simulated_s);
   const auto first =
       std::ranges::min_element(run.reports, {}, [](const EndReport& report) { return rank(report.end); });
@@ -88,6 +88,7 @@ RunOutcome judge(const supervisor::SupervisedRun& run) {
     outcome.reason = run.signal != 0 ? "interrupted" : "no container lived to report";
   } else {
     outcome.reason = first->reason;
+    outcome.ended = runtime::to_text(first->end);
     if (mission != run.reports.end()) {
       judge_mission(outcome, *mission->mission, first->end);
     } else {

@@ -32,6 +32,8 @@ struct RunOutcome {
   RunResult result = RunResult::success;
   std::string reason;  ///< one sentence; may be empty after a success
   std::map<std::string, RobotOutcome> robots;
+  std::string ended;       ///< why the containers ended: "finished", "time limit", …; empty if none reported
+  std::string failures;    ///< of components and containers on the way, one sentence; empty: none
   std::string trace_hash;  ///< hexadecimal; empty under the wall clock
   double simulated_s = 0.0;
   double wall_s = 0.0;

@@ -5,6 +5,7 @@
 #include "deploy/cli/catalogue.hpp"
 #include "deploy/cli/resources.hpp"
 #include "deploy/composition/load.hpp"
+#include "deploy/composition/settings.hpp"
 #include "framework/runtime/status.hpp"
 
 namespace kervan::cli {
@@ -15,7 +16,11 @@ composition::ResolvedComposition prepare(const CompositionRequest& request, Comp
   const auto file = composition::find_composition(request.composition, resources.compositions);
   InstalledComponents components(registry);
   const composition::ResolveOptions options{resources.files, {runtime::kStatusTopic, "/rosout"}};
-  composition::Composition loaded = composition::load(file, {request.arguments, request.place, request.host});
+  composition::Composition loaded =
+      composition::load(file, {.arguments = request.arguments,
+                               .place = request.place,
+                               .host = request.host,
+                               .settings = composition::settings_from_command_line(request.settings)});
   if (adjust) adjust(loaded);
   return composition::resolve(std::move(loaded), components, options);
 }

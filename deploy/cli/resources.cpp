@@ -15,6 +15,8 @@ void add(const fs::path& folder, Resources& resources) {
   std::error_code none;
   const fs::path compositions = fs::canonical(folder / "compositions", none);
   if (!none) resources.compositions.push_back(compositions);
+  const fs::path experiments = fs::canonical(folder / "experiments", none);
+  if (!none) resources.experiments.push_back(experiments);
   resources.files.push_back(folder);
 }
 

@@ -8,6 +8,7 @@ namespace kervan::cli {
 
 struct Resources {
   std::vector<std::filesystem::path> compositions;  ///< lab.yaml, …
+  std::vector<std::filesystem::path> experiments;   ///< plans of many runs
   std::vector<std::filesystem::path> files;         ///< worlds/, robots/
 };
 

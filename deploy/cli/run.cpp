@@ -122,6 +122,16 @@ fs::path make_run_folder(const std::string& runs, const std::string& name) {
   throw ConfigError({"--runs " + runs, 0, 0}, "cannot make a folder in it: " + error.message());
 }
 
+/// The folder that `--out` names, made if it is not there.
+fs::path take_run_folder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error) throw ConfigError({"--out " + folder, 0, 0}, "cannot make the folder: " + error.message());
+  if (!fs::is_empty(folder))
+    throw ConfigError({"--out " + folder, 0, 0}, "the folder is not empty; name one that is, or one that is not there");
+  return folder;
+}
+
 const char* to_text(RunResult result) {
   switch (result) {
     case RunResult::success: return "success";
@@ -151,10 +161,15 @@ ordered_json summary(const RunOutcome& outcome) {
                           {"exit", container.exit},
                           {"worst_latency_s", container.counters.worst_latency_s},
                           {"missed_deadlines", container.counters.missed_deadlines}});
-  ordered_json object = {{"result", to_text(outcome.result)}, {"robots", robots},
-                         {"trace_hash", outcome.trace_hash},  {"simulated_s", rounded(outcome.simulated_s)},
-                         {"wall_s", rounded(outcome.wall_s)}, {"containers", containers}};
+  ordered_json object = {{"result", to_text(outcome.result)},
+                         {"ended", outcome.ended},
+                         {"robots", robots},
+                         {"trace_hash", outcome.trace_hash},
+                         {"simulated_s", rounded(outcome.simulated_s)},
+                         {"wall_s", rounded(outcome.wall_s)},
+                         {"containers", containers}};
   if (outcome.result != RunResult::success) object["reason"] = outcome.reason;
+  if (!outcome.failures.empty()) object["failures"] = outcome.failures;
   if (outcome.signal != 0) object["interrupted"] = true;
   return object;
 }
@@ -243,7 +258,7 @@ int run(const RunRequest& request) {
     std::signal(SIGINT, on_signal);
     std::signal(SIGTERM, on_signal);
   }
-  const std::vector<fs::path> made = missing(request.runs_folder);
+  const std::vector<fs::path> made = missing(request.run_folder.empty() ? request.runs_folder : request.run_folder);
   RunOptions options;
   options.time_limit = limit;
   options.threads = thread_count;
@@ -251,7 +266,8 @@ int run(const RunRequest& request) {
 
   RunOutcome outcome;
   try {
-    options.run_folder = make_run_folder(request.runs_folder, composition.source.name);
+    options.run_folder = request.run_folder.empty() ? make_run_folder(request.runs_folder, composition.source.name)
+                                                    : take_run_folder(request.run_folder);
     Progress progress(std::min(limit, mission_timeout(composition)), isatty(STDERR_FILENO) == 1);
     outcome = run_composition(composition, registry, options,
                               {.progress = [&](Duration simulated) { progress.show(simulated); },

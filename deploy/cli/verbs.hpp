@@ -19,6 +19,7 @@ enum ExitCode : int {
 struct CompositionRequest {
   std::string composition;             ///< a name or a file
   std::vector<std::string> arguments;  ///< "name=value"
+  std::vector<std::string> settings;   ///< "component.params.name=value"
   std::vector<std::string> place;      ///< "all", "each" or "container=component,component"
   std::string host;                    ///< which of the composition's hosts this is; empty: not said
   bool json = false;
@@ -29,6 +30,14 @@ struct RunRequest : CompositionRequest {
   std::string threads;     ///< "4"; empty: as the composition says
   std::string snapshots;   ///< "5s"; empty: as the composition says
   std::string runs_folder = "runs";
+  std::string run_folder;  ///< of this run; empty: a new one in runs_folder
+};
+
+struct SweepRequest {
+  std::string file;  ///< a name or a file
+  std::string out;   ///< folder; empty: sweeps/NAME
+  std::string jobs;  ///< "4"; empty: as many as there are cores
+  bool json = false;
 };
 
 struct CheckRequest : CompositionRequest {
@@ -71,6 +80,7 @@ struct SystemdRequest : CompositionRequest {
 };
 
 int run(const RunRequest& request);
+int sweep(const SweepRequest& request);
 int check(const CheckRequest& request);
 int describe(const DescribeRequest& request);
 int draw(const DrawRequest& request);

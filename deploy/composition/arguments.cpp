@@ -151,6 +151,16 @@ void give(Argument& argument, const Node& value) {
   argument.value = value;
 }
 
+void give_values(std::vector<Argument>& arguments, const std::vector<Node>& values, const std::string& of) {
+  for (const Node& value : values) {
+    Argument* argument = find(arguments, value.name);
+    if (argument == nullptr)
+      value.fail_at_key(of + " has no argument '" + value.name + "'" +
+                        config::hint(value.name, names_of(arguments), "it has"));
+    give(*argument, value);
+  }
+}
+
 void give_from_command_line(std::vector<Argument>& arguments, const std::vector<std::string>& given) {
   std::set<std::string> seen;
   for (const std::string& text : given) {

@@ -14,6 +14,10 @@ std::vector<Argument> declare_arguments(const config::Node& declarations);
 /// Gives an argument its value after checking it against its declaration.
 void give(Argument& argument, const config::Node& value);
 
+/// Gives each value to the argument of its node's name. Throws ConfigError at the node for an unknown name or a wrong
+/// value; `of` says whose arguments they are.
+void give_values(std::vector<Argument>& arguments, const std::vector<config::Node>& values, const std::string& of);
+
 /// The values of `--arg name=value`. Throws ConfigError for an unknown name, one given twice, a wrong value, or if one
 /// is left without.
 void give_from_command_line(std::vector<Argument>& arguments, const std::vector<std::string>& given);

@@ -4,6 +4,7 @@
 #include <cctype>
 
 #include "deploy/composition/arguments.hpp"
+#include "deploy/composition/settings.hpp"
 
 namespace kervan::composition {
 namespace {
@@ -36,17 +37,6 @@ Node* child_of(Node& map, const std::string& key) {
   return found == map.children.end() ? nullptr : &*found;
 }
 
-std::vector<std::string> split(const std::string& path) {
-  std::vector<std::string> parts(1);
-  for (const char c : path) {
-    if (c == '.')
-      parts.emplace_back();
-    else
-      parts.back() += c;
-  }
-  return parts;
-}
-
 ComponentEntry component_of(const Node& node, const std::string& scope, const std::string& log_level) {
   node.only_keys({"type", "params", "remap", "strength", "log"});
   ComponentEntry entry;
@@ -65,7 +55,7 @@ ComponentEntry component_of(const Node& node, const std::string& scope, const st
 
 /// One line of `set:`; its key is a path such as `mapper.params.update` into the template's components.
 void set_value(Node& components, const Node& setting, const std::string& template_name) {
-  const std::vector<std::string> path = split(setting.name);
+  const std::vector<std::string> path = split_path(setting.name);
   Node* node = child_of(components, path[0]);
   if (node == nullptr)
     setting.fail_at_key("the template '" + template_name + "' has no component '" + path[0] + "'" +
@@ -74,21 +64,7 @@ void set_value(Node& components, const Node& setting, const std::string& templat
   if (path.size() < 2 || std::find(allowed.begin(), allowed.end(), path[1]) == allowed.end())
     setting.fail_at_key("'" + setting.name + "' names nothing that can be set; write e.g. " + path[0] +
                         ".params.NAME, " + path[0] + ".remap.PORT or " + path[0] + ".log");
-  for (std::size_t i = 1; i < path.size(); ++i) {
-    if (!node->is_map())
-      setting.fail_at_key("'" + node->name + "' is " + node->shown() + ", so nothing below it can be set");
-    Node* next = child_of(*node, path[i]);
-    if (next == nullptr) {
-      Node made = empty_map_at(setting.key_location);
-      made.name = path[i];
-      node->children.push_back(std::move(made));
-      next = &node->children.back();
-    }
-    node = next;
-  }
-  const std::string name = node->name;
-  *node = setting;
-  node->name = name;
+  put(*node, std::span(path).subspan(1), setting);
 }
 
 /// The values that an instance gives to its template's parameters, beside the composition's arguments.

@@ -9,6 +9,7 @@
 #include "deploy/composition/hosts.hpp"
 #include "deploy/composition/placement.hpp"
 #include "deploy/composition/qos_rules.hpp"
+#include "deploy/composition/settings.hpp"
 
 namespace kervan::composition {
 namespace {
@@ -93,6 +94,7 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
   composition.file = shown_as;
   composition.folder = folder;
   if (const Node* args = root.optional("args")) composition.arguments = declare_arguments(*args);
+  give_values(composition.arguments, options.values, "the composition '" + root.required("name").as_text() + "'");
   give_from_command_line(composition.arguments, options.arguments);
 
   const auto filled = [&](const char* key) -> std::optional<Node> {
@@ -124,6 +126,7 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
       mission->fail_at_key("'mission' is a component already (" + to_text(same->location) + "); keep one of the two");
     composition.components.push_back(mission_component(*mission, log_level));
   }
+  apply_settings(composition, options.settings);
   const auto containers = filled("containers");
   composition.containers =
       place_components(composition, containers ? &*containers : nullptr, mission ? "mission" : "", options.place);
@@ -158,11 +161,12 @@ Composition load_text(const std::string& text, const std::string& shown_as, cons
   return load_node(config::parse(text, shown_as), shown_as, folder, options);
 }
 
-fs::path find_composition(const std::string& name_or_file, const std::vector<fs::path>& folders) {
+fs::path find_composition(const std::string& name_or_file, const std::vector<fs::path>& folders,
+                          const std::string& what) {
   if (name_or_file.ends_with(".yaml") || name_or_file.ends_with(".yml") ||
       name_or_file.find('/') != std::string::npos) {
     if (fs::is_directory(name_or_file))
-      throw ConfigError({name_or_file, 0, 0}, "this is a folder; name a file, or a composition: kervan run lab");
+      throw ConfigError({name_or_file, 0, 0}, "this is a folder; name a file, or a shipped " + what);
     if (!fs::is_regular_file(name_or_file)) throw ConfigError({name_or_file, 0, 0}, "there is no such file");
     return name_or_file;
   }
@@ -177,7 +181,7 @@ fs::path find_composition(const std::string& name_or_file, const std::vector<fs:
   const std::vector<std::string> names(known.begin(), known.end());
   const std::string beside = name_or_file + ".yaml";
   throw ConfigError(
-      {}, "there is no composition '" + name_or_file + "'" +
+      {}, "there is no " + what + " '" + name_or_file + "'" +
               (!name_or_file.empty() && fs::is_regular_file(beside) ? "; a file is named with its ending: " + beside
                                                                     : config::hint(name_or_file, names, "there are")));
 }

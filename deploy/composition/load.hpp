@@ -13,6 +13,8 @@ struct LoadOptions {
   std::vector<std::string> arguments = {};  ///< "controller=vff", as on the command line
   std::vector<std::string> place = {};      ///< "all", "each" or "brain=r1/*,r2", as on the command line
   std::string host = {};                    ///< the host that this is; empty: not said
+  std::vector<config::Node> values = {};    ///< arguments, too, each named by its node: `seed`
+  std::vector<config::Node> settings = {};  ///< parameters over those of the file (settings.hpp)
 };
 
 /// Throws ConfigError at the place of the first thing that cannot be used.
@@ -22,10 +24,12 @@ Composition load(const std::filesystem::path& file, const LoadOptions& options =
 Composition load_text(const std::string& text, const std::string& shown_as, const std::filesystem::path& folder,
                       const LoadOptions& options = {});
 
-/// The file of a composition: `name_or_file` itself if it ends in .yaml or holds a slash, else NAME.yaml in the first
-/// of `folders` that has it. Throws ConfigError with a suggestion and the list of what there is.
+/// The file of a composition, or of what else `what` says: `name_or_file` itself if it ends in .yaml or holds a slash,
+/// else NAME.yaml in the first of `folders` that has it. Throws ConfigError with a suggestion and the list of what there
+/// is.
 std::filesystem::path find_composition(const std::string& name_or_file,
-                                       const std::vector<std::filesystem::path>& folders);
+                                       const std::vector<std::filesystem::path>& folders,
+                                       const std::string& what = "composition");
 
 /// The path as a person would write it from here: relative if it lies below the working folder.
 std::string shown_path(const std::filesystem::path& path);

@@ -21,7 +21,7 @@ constexpr int kControlDescriptor = 3;  ///< in the child
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 /// What runs in the child before it becomes the program: nothing that allocates or locks.
-[[noreturn]] void become(const char* program, char* const* arguments, int control, pid_t parent) {
+[[noreturn]] void become(const char* program, char* const* arguments, int control, int output, pid_t parent) {
   ::setpgid(0, 0);
   // Asked for after the fork, so it holds for this process; and if the parent died in between, nobody will tell.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -33,10 +33,11 @@ constexpr int kControlDescriptor = 3;  ///< in the child
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   if (nothing > STDERR_FILENO) ::close(nothing);
+  if (output >= 0) ::dup2(output, STDERR_FILENO);
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
   if (control == kControlDescriptor)
     ::fcntl(control, F_SETFD, 0);
-  else
+  else if (control >= 0)
     ::dup2(control, kControlDescriptor);
   ::execv(program, arguments);
   ::_exit(127);
@@ -45,22 +46,34 @@ constexpr int kControlDescriptor = 3;  ///< in the child
 }  // namespace
 
 ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments) {
-  arguments.insert(arguments.begin(), program.string());
   arguments.insert(arguments.end(), {"--control-fd", std::to_string(kControlDescriptor)});
+  std::array<int, 2> pipe{};
+  if (::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) fail("cannot make a pipe");
+  control_ = pipe[0];
+  start(program, std::move(arguments), pipe[1], -1);
+}
+
+ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments,
+                           const std::filesystem::path& output) {
+  const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(("cannot write " + output.string()).c_str());
+  start(program, std::move(arguments), -1, file);
+}
+
+void ChildProcess::start(const std::filesystem::path& program, std::vector<std::string> arguments, int control,
+                         int output) {
+  arguments.insert(arguments.begin(), program.string());
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-
-  std::array<int, 2> pipe{};
-  if (::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) fail("cannot make a pipe");
   const pid_t parent = ::getpid();
   pid_ = ::fork();
-  if (pid_ == 0) become(arguments.front().c_str(), pointers.data(), pipe[1], parent);
+  if (pid_ == 0) become(arguments.front().c_str(), pointers.data(), control, output, parent);
   const int error = errno;
-  ::close(pipe[1]);
-  control_ = pipe[0];
+  if (control >= 0) ::close(control);
+  if (output >= 0) ::close(output);
   if (pid_ < 0) {
-    ::close(control_);
+    if (control_ >= 0) ::close(control_);
     errno = error;
     fail("cannot start a process");
   }
@@ -70,7 +83,7 @@ ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std
     const int no_descriptor = errno;
     ::kill(pid_, SIGKILL);
     ::waitpid(pid_, nullptr, 0);
-    ::close(control_);
+    if (control_ >= 0) ::close(control_);
     errno = no_descriptor;
     fail("cannot watch a process");
   }
@@ -83,7 +96,7 @@ ChildProcess::~ChildProcess() {
     ::waitpid(pid_, nullptr, 0);
   }
   ::close(pidfd_);
-  ::close(control_);
+  if (control_ >= 0) ::close(control_);
 }
 
 void ChildProcess::signal(int number) const {

@@ -16,14 +16,18 @@ class ChildProcess {
   /// standard input is empty, its standard output goes to our standard error. To be called from the main thread: the
   /// kernel kills the child when the thread that made it ends. Throws std::system_error.
   ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments);
+  /// The same without a control pipe, for a program that knows of none: what it prints goes to the file `output`, which
+  /// is made anew.
+  ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments,
+               const std::filesystem::path& output);
   /// Kills it if it still runs, and waits for its end.
   ~ChildProcess();
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   pid_t pid() const { return pid_; }
-  int ended_descriptor() const { return pidfd_; }  ///< readable once it has ended
-  int control_descriptor() const { return control_; }
+  int ended_descriptor() const { return pidfd_; }      ///< readable once it has ended
+  int control_descriptor() const { return control_; }  ///< -1 without a control pipe
 
   void signal(int number) const;
 
@@ -33,6 +37,9 @@ class ChildProcess {
   bool take_stopped() const;
 
  private:
+  /// `control` and `output` are the child's ends, or -1; this closes them.
+  void start(const std::filesystem::path& program, std::vector<std::string> arguments, int control, int output);
+
   pid_t pid_ = -1;
   int pidfd_ = -1;
   int control_ = -1;

@@ -105,9 +105,14 @@ const std::vector<Arrow> arrows = {
     {"deploy/cli/draw\\.cpp",
      {"deploy/", "framework/", "sim/files/world_file.hpp", "components/observe/map_drawing.hpp",
       "components/observe/map_truth.hpp"}},
+    {"deploy/cli/(drawn_world|sweep)\\.[ch]pp",
+     {"deploy/", "framework/", "sim/files/world_file.hpp", "sim/world.hpp", "components/observe/map_drawing.hpp"}},
     {"deploy/cli/.*", {"deploy/", "framework/", messages}},
     // The supervisor writes what containers read, and reads what they write.
     {"deploy/supervisor/.*", {own_folder, "deploy/container/", "deploy/composition/", "framework/", messages}},
+    // Plans of many runs: what a run left is read and drawn with the library that drew it.
+    {"deploy/lab/.*",
+     {own_folder, "deploy/composition/", "deploy/supervisor/child_process.hpp", "framework/", "components/observe/"}},
     {"deploy/.*", {own_folder, "deploy/composition/", "framework/", messages}, {"deploy/cli/"}},
 
     // The generator is a back end of idlc, whose headers begin alike.
@@ -130,6 +135,8 @@ const std::vector<Fence> fences = {
     {"spdlog/",
      {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
     {"CLI/", {"deploy/cli/main\\.cpp", "tests/experiments/.*"}},
+    // Quantiles of distributions; its headers are slow to compile.
+    {"boost/", {"deploy/lab/statistics\\.cpp"}},
     {"png.h", {"framework/map_file/image\\.cpp"}},
     {"emmintrin.h", {"components/mapping/.*_kernel\\..pp"}},
     {"immintrin.h", {"sim/ray_kernel_avx.*\\.cpp"}},

@@ -95,15 +95,15 @@ TEST_F(Program, DescribesEveryComponent) {
 }
 
 TEST_F(Program, HelpsWithEveryVerb) {
-  for (const char* verb : {"", "run", "check", "describe", "draw", "container", "systemd"})
+  for (const char* verb : {"", "run", "sweep", "check", "describe", "draw", "container", "systemd"})
     EXPECT_EQ(kervan(std::string(verb) + " --help").code, 0) << verb;
 }
 
 TEST_F(Program, RefusesInOneLineAndWritesNothing) {
-  expect_refused("", "a command is missing: run, check, describe, draw, container, systemd; see kervan --help");
+  expect_refused("", "a command is missing: run, sweep, check, describe, draw, container, systemd; see kervan --help");
   expect_refused(
       "rnu lab",
-      "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd");
+      "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, container, systemd");
   expect_refused("run lba",
                  "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, "
                  "10_wall_follow, 11_map_room, 12_map_two_robots, 13_map_drifting, 20_vff_rods, "

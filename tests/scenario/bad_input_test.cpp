@@ -201,11 +201,11 @@ TEST_F(BadInput, Options) {
   expect_refused({"run", "lab", "lab"},
                  "kervan run: The following argument was not expected: lab; see kervan run --help\n");
   expect_refused({"run"}, "kervan run: a composition is missing; name a shipped one, such as lab, or a file; see ");
-  expect_refused({}, "a command is missing: run, check, describe, draw, container, systemd; see kervan --help\n");
+  expect_refused({}, "a command is missing: run, sweep, check, describe, draw, container, systemd; see kervan --help\n");
   expect_refused({"--nonsense"}, "kervan: ");
   expect_refused(
       {"rnu", "lab"},
-      "there is no command 'rnu'; did you mean 'run'? commands: run, check, describe, draw, container, systemd\n");
+      "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, container, systemd\n");
   expect_refused({"describe", "magic/wand"}, "there is no component type 'magic/wand'; there are: ");
 }
 
