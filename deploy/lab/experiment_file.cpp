@@ -58,8 +58,10 @@ std::optional<std::pair<std::int64_t, std::int64_t>> range_of(const std::string&
   return std::pair(first, last);
 }
 
-Level level_of(Node value, const std::string& factor) {
-  value.name = factor;
+/// The factor's name is the key of each of its values.
+Level level_of(Node value, const Factor& factor) {
+  value.name = factor.name;
+  value.key_location = factor.location;
   std::string label = flow_text(value);
   return {std::move(label), {std::move(value)}};
 }
@@ -75,14 +77,14 @@ void read_range(const Node& node, Factor& factor) {
   for (std::int64_t value = first; value <= last; ++value) {
     Node item = node;
     item.text = std::to_string(value);
-    factor.levels.push_back(level_of(std::move(item), factor.name));
+    factor.levels.push_back(level_of(std::move(item), factor));
   }
 }
 
 Factor read_factor(const Node& node) {
   Factor factor{node.name, {}, node.key_location};
   if (node.is_list())
-    for (const Node& item : node.children) factor.levels.push_back(level_of(item, factor.name));
+    for (const Node& item : node.children) factor.levels.push_back(level_of(item, factor));
   else if (node.is_map())
     for (const Node& level : node.children) factor.levels.push_back({level.name, read_settings(level)});
   else

@@ -104,7 +104,7 @@ TEST(Sweep, RefusesWhatIsWrittenWronglyAtItsPlace) {
   EXPECT_EQ(refusal("matrix: {seed: [1, 2, 1]}\n" + responses),
             "s.yaml:4:16: seed: the value 1 is there twice; keep one of the two");
   EXPECT_EQ(refusal("matrix: {arm: {a: {w: 1}}, w: [1]}\n" + responses),
-            "s.yaml:4:32: 'w' is given by the factor 'arm' already");
+            "s.yaml:4:28: 'w' is given by the factor 'arm' already");
   EXPECT_EQ(refusal(matrix + "responses: {}\n"), "s.yaml:5:12: responses: there must be at least one response");
   EXPECT_EQ(refusal(matrix + "responses: {t: {figrue: x}}\n"),
             "s.yaml:5:17: unknown key 'figrue'; did you mean 'figure'? allowed: figure, unit, is, optional");
