@@ -17,10 +17,8 @@ void Bodies::add(std::string name, const Outline& outline, const Pose2& pose) {
   radii_.push_back(outline.circumradius());
   largest_radius_ = std::max(largest_radius_, outline.circumradius());
   corners_.resize(corners_.size() + outline.corners().size());
-  next_corners_.resize(corners_.size());
   first_corner_.push_back(corners_.size());
   poses_.push_back(pose);
-  next_poses_.push_back(pose);
   move(size() - 1, pose);
   // Looked through one by one, too many new ones would make adding them slow.
   if (size() - sorted_ > 4 * worth_sorting) sort_anew();
@@ -31,8 +29,6 @@ void Bodies::remove(std::size_t body) {
   const std::size_t first = first_corner_[body], count = corner_count(body);
   corners_.erase(corners_.begin() + static_cast<std::ptrdiff_t>(first),
                  corners_.begin() + static_cast<std::ptrdiff_t>(first + count));
-  next_corners_.resize(corners_.size());
-  next_poses_.pop_back();
   erase_from(first_corner_);
   for (std::size_t i = body; i < first_corner_.size(); ++i) first_corner_[i] -= count;
   erase_from(names_);
@@ -44,22 +40,27 @@ void Bodies::remove(std::size_t body) {
 }
 
 void Bodies::move(std::size_t body, const Pose2& pose) {
-  prepare(body, pose);
-  go(body);
+  move_on(body, pose);
+  if (body < sorted_) moved_ = std::max(moved_, (center(body) - sorted_at_[body]).lpNorm<Eigen::Infinity>());
 }
 
-void Bodies::prepare(std::size_t body, const Pose2& pose) {
-  next_poses_[body] = pose;
+void Bodies::move_on(std::size_t body, const Pose2& pose) {
+  poses_[body] = pose;
   const double c = std::cos(pose.yaw), s = std::sin(pose.yaw);
-  Vector2* placed = &next_corners_[first_corner_[body]];
+  Vector2* placed = &corners_[first_corner_[body]];
   for (const Vector2& corner : outlines_[body].corners())
     *placed++ = {pose.x + c * corner.x() - s * corner.y(), pose.y + s * corner.x() + c * corner.y()};
 }
 
-void Bodies::go(std::size_t body) {
-  poses_[body] = next_poses_[body];
-  std::copy_n(&next_corners_[first_corner_[body]], corner_count(body), &corners_[first_corner_[body]]);
-  if (body < sorted_) moved_ = std::max(moved_, (center(body) - sorted_at_[body]).lpNorm<Eigen::Infinity>());
+double Bodies::separation(std::size_t a, std::size_t b) const {
+  const Vector2 apart = center(b) - center(a);
+  const double distance = apart.norm();
+  if (distance == 0.0) return -(radius(a) + radius(b));
+  const Vector2 axis = apart / distance;
+  double reach = -infinity, other_reach = infinity;
+  for (const Vector2& corner : corners(a)) reach = std::max(reach, (corner - center(a)).dot(axis));
+  for (const Vector2& corner : corners(b)) other_reach = std::min(other_reach, (corner - center(a)).dot(axis));
+  return other_reach - reach;
 }
 
 std::uint32_t Bodies::cell(double coordinate) const {

@@ -23,10 +23,10 @@ class Bodies {
 
   void move(std::size_t body, const Pose2& pose);
 
-  /// The same in two parts: several threads may prepare the moves of different bodies while others search; a body is
-  /// where it was until it goes.
-  void prepare(std::size_t body, const Pose2& pose);
-  void go(std::size_t body);
+  /// The same for many: first it is said how far the centres may move together, then several threads may move
+  /// different bodies by no more than that while others search.
+  void make_way(double longest) { moved_ += longest; }
+  void move_on(std::size_t body, const Pose2& pose);
 
   std::size_t size() const { return poses_.size(); }
   const std::string& name(std::size_t body) const { return names_[body]; }
@@ -37,6 +37,9 @@ class Bodies {
   /// A disc of this radius around its centre holds the body; and the largest of them.
   double radius(std::size_t body) const { return radii_[body]; }
   double largest_radius() const { return largest_radius_; }
+
+  /// No more than the distance of two bodies, which it is along the line through their centres; quick. May be negative.
+  double separation(std::size_t a, std::size_t b) const;
 
   std::span<const Vector2> corners(std::size_t body) const {
     return {corners_.data() + first_corner_[body], corner_count(body)};
@@ -74,8 +77,6 @@ class Bodies {
   std::vector<Pose2> poses_;
   std::vector<double> radii_;
   std::vector<Vector2> corners_;  // in map
-  std::vector<Pose2> next_poses_;
-  std::vector<Vector2> next_corners_;
   std::vector<std::size_t> first_corner_{0};
   std::vector<Outline> outlines_;
   std::vector<std::string> names_;

@@ -41,9 +41,8 @@ RayBatch CellMap::batch(double range) const {
 void CellMap::cast(std::span<const RayFan> fans, double range, std::span<float> distances,
                    std::span<std::int32_t> faces, Instructions instructions) const {
   assert(faces.size() == distances.size());
-  constexpr std::size_t most = 256;  // rays at a time, on the stack
-  std::array<std::int32_t, most> columns, rows;
-  std::array<float, most> x, y, dx, dy;
+  std::array<std::int32_t, most_rays> columns, rows;
+  std::array<float, most_rays> x, y, dx, dy;
   RayBatch rays = batch(range);
   rays.column = columns.data();
   rays.row = rows.data();
@@ -71,8 +70,8 @@ void CellMap::cast(std::span<const RayFan> fans, double range, std::span<float> 
     }
     const Place from = place(at);
     for (std::size_t first = 0; first < fan.directions.size();) {
-      if (waiting == most) cast_waiting();
-      const std::size_t count = std::min(most - waiting, fan.directions.size() - first);
+      if (waiting == most_rays) cast_waiting();
+      const std::size_t count = std::min(most_rays - waiting, fan.directions.size() - first);
       for (std::size_t i = 0; i < count; ++i) {
         columns[waiting + i] = from.column;
         rows[waiting + i] = from.row;

@@ -30,7 +30,7 @@ void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomS
       turned[i] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
     }
     const RayFan fan{origin, {turned.data(), count}};
-    around.cast({&fan, 1}, mount_.max_range, {hits.data(), count});
+    around.cast({&fan, 1}, mount_.max_range, {hits.data(), count}, Normals::unwanted);
     for (std::size_t i = 0; i < count; ++i) {
       double range = hits[i].distance;
       if (range < infinity) {

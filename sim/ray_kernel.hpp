@@ -9,9 +9,13 @@
 /// declarations only: an inline function would exist once in the program, in whichever version the linker takes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace kervan::sim {
+
+/// So many rays are on their way at once: enough to wait for memory together, few enough to be kept on the stack.
+inline constexpr std::size_t most_rays = 256;
 
 /// Rays and what they meet.
 struct RayBatch {

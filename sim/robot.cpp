@@ -87,18 +87,26 @@ void Robot::drive(const Surroundings& around) {
 }
 
 void Robot::measure(const Surroundings& around, Duration before, Duration now) {
+  SonarVolley sonars;
+  measure(around, before, now, sonars);
+  sonars.fire();
+}
+
+void Robot::measure(const Surroundings& around, Duration before, Duration now, SonarVolley& sonars) {
   body_.look(around);
   feel(around);
   if (due(setup_.odometry_period, before, now)) measure_odometry(now);
-  if (due(setup_.sonar_period, before, now)) measure_sonar(around, now);
+  if (due(setup_.sonar_period, before, now)) measure_sonar(around, now, sonars);
   if (laser_ && due(setup_.laser_period, before, now)) measure_laser(around, now);
   if (gyro_ && due(setup_.gyro_period, before, now)) measure_gyro(now);
 }
 
 void Robot::measure_first(const Surroundings& around, Duration now) {
+  SonarVolley sonars;
   body_.look(around);
   feel(around);
-  measure_sonar(around, now);
+  measure_sonar(around, now, sonars);
+  sonars.fire();
   if (laser_) measure_laser(around, now);
   measure_odometry(now);
   if (gyro_) measure_gyro(now);
@@ -118,10 +126,10 @@ Pose2 Robot::mounted(const Pose2& on_body) const {
   return Pose2{0.0, 0.0, geometry::angle_between(pose().yaw, body_.hull().yaw)} * on_body;
 }
 
-void Robot::measure_sonar(const Surroundings& around, Duration now) {
+void Robot::measure_sonar(const Surroundings& around, Duration now, SonarVolley& sonars) {
   sonar_scan_.stamp = now;
   const auto round = static_cast<std::uint64_t>(now / setup_.sonar_period);
-  sonars_.measure(around, body_.hull(), random_, round, sonar_scan_.ranges);
+  sonars.add(sonars_, around, body_.hull(), random_, round, sonar_scan_.ranges);
 }
 
 void Robot::measure_laser(const Surroundings& around, Duration now) {

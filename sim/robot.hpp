@@ -97,6 +97,9 @@ class Robot {
   /// and not after `now`.
   void measure(const Surroundings& around, Duration before, Duration now);
 
+  /// The same, but the sonars are only made ready to fire with others.
+  void measure(const Surroundings& around, Duration before, Duration now, SonarVolley& sonars);
+
   /// The robot has just been put into the world: measures with all its sensors.
   void measure_first(const Surroundings& around, Duration now);
 
@@ -131,7 +134,7 @@ class Robot {
   const Stall& stall() const { return stall_; }
 
  private:
-  void measure_sonar(const Surroundings& around, Duration now);
+  void measure_sonar(const Surroundings& around, Duration now, SonarVolley& sonars);
   void measure_laser(const Surroundings& around, Duration now);
   void measure_odometry(Duration now);
   void measure_gyro(Duration now);

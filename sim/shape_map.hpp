@@ -18,6 +18,9 @@ struct RayHit {
   Vector2 normal = Vector2::Zero();  ///< of the surface, length 1, on the ray's side
 };
 
+/// Whether the normals of hits are of interest; where they are not, they need not be what they should.
+enum class Normals { wanted, unwanted };
+
 /// The point of all obstacles that is nearest to a given one.
 struct NearestObstacle {
   double distance = infinity;       ///< m; 0 inside a solid, infinity if there is none

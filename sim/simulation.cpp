@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -21,7 +22,7 @@ Simulation::Simulation(std::shared_ptr<const World> world, std::vector<RobotSetu
   robots_.reserve(robots.size());
   for (RobotSetup& setup : robots) add(std::move(setup));
   bodies_.sort();
-  for_each(robots_.size(), [this](std::size_t i) { robots_[i].measure_first(around(i), now_); });
+  for_each_robot([this](std::size_t i) { robots_[i].measure_first(around(i), now_); });
 }
 
 /// Those that are there already are in its way.
@@ -39,7 +40,7 @@ void Simulation::add(RobotSetup setup) {
   order_.insert(place, robots_.size());
   robots_.push_back(std::move(robot));
   ways_.resize(robots_.size());
-  has_driven_.resize(robots_.size());
+  is_alone_.resize(robots_.size());
 }
 
 void Simulation::spawn(RobotSetup robot) {
@@ -78,15 +79,27 @@ std::size_t Simulation::place_of(std::string_view name) const {
 void Simulation::step(Duration dt) {
   assert(dt > Duration::zero());
   move_obstacles(dt);
+  bodies_.sort();
   drive(dt);
   bodies_.sort();
-  const std::span<const std::uint32_t> bodies = bodies_.by_place();
-  for_each(bodies.size(), [this, bodies, dt](std::size_t i) {
-    if (bodies[i] < moving_.size()) return;
-    const std::size_t robot = bodies[i] - moving_.size();
-    robots_[robot].measure(around(robot), now_, now_ + dt);
-  });
+  measure(dt);
   now_ += dt;
+}
+
+/// Neighbours fire their sonars together.
+void Simulation::measure(Duration dt) {
+  const std::span<const std::uint32_t> bodies = bodies_.by_place();
+  constexpr std::size_t together = SonarVolley::most;
+  workers_->for_each((bodies.size() + together - 1) / together, worth_sharing / together, [&](std::size_t volley) {
+    SonarVolley sonars;
+    for (const std::uint32_t body :
+         bodies.subspan(volley * together).first(std::min(together, bodies.size() - volley * together))) {
+      if (body < moving_.size()) continue;
+      const std::size_t robot = body - moving_.size();
+      robots_[robot].measure(around(robot), now_, now_ + dt, sonars);
+    }
+    sonars.fire();
+  });
 }
 
 /// They mind the robots, and neither the walls nor each other: what they do among themselves is their script's matter.
@@ -102,40 +115,59 @@ void Simulation::move_obstacles(Duration dt) {
   }
 }
 
-/// The robots drive one after the other. Who stays so far from everybody that it makes no difference when it drives may
-/// do so at once, and beside others.
+/// The robots drive one after the other. Who stays so far from somebody that it makes no difference which of them
+/// drives first may do so beside that one.
 void Simulation::drive(Duration dt) {
-  for_each(robots_.size(), [this, dt](std::size_t i) {
-    const Motion& planned = robots_[i].plan(now_, dt);
-    ways_[i] = std::abs(planned.distance);
-  });
+  for_each_robot([this, dt](std::size_t i) { ways_[i] = robots_[i].body().length(robots_[i].plan(now_, dt)); });
   const double longest_way = ways_.empty() ? 0.0 : *std::max_element(ways_.begin(), ways_.end());
-  for_each(robots_.size(), [this, longest_way](std::size_t i) {
-    Robot& robot = robots_[i];
-    const Body& body = robot.body();
-    const double near = body.heeds() + body.length(robot.planned()) + longest_way + doubt;
-    has_driven_[i] = around(i).exact_room_among_bodies(body.outline(), body.hull(), near).all.distance >= near;
-    if (!has_driven_[i]) return;
-    robot.drive(*world_);
-    bodies_.prepare(body_of(i), body.hull());
+  groups_.reset(bodies_.size(), moving_.size());
+  for_each_robot([this, longest_way](std::size_t i) { find_others_near(i, longest_way); });
+  groups_.sort(order_);
+  bodies_.make_way(longest_way + doubt);
+  for_each_robot([this](std::size_t i) {
+    groups_.visit_led_by(body_of(i), [this](std::size_t body) { drive(body - moving_.size()); });
   });
-  for (const std::size_t i : order_) {
-    if (has_driven_[i]) {
-      bodies_.go(body_of(i));
-    } else {
-      drive_among_others(i);
-      bodies_.move(body_of(i), robots_[i].body().hull());
-    }
-  }
 }
 
-void Simulation::drive_among_others(std::size_t robot) {
+/// Finds out whether somebody may come so near to the robot in this step that the robot heeds it.
+///
+/// What is compared is Bodies::separation before the step, since Body::move looks at no more than that in a step in
+/// which nothing is near. A body that goes a way w changes it by no more than w, and by (r + r') w pi / 2 / d because
+/// the line through the centres, a distance d apart, turns; r and r' are the radii of the two bodies.
+void Simulation::find_others_near(std::size_t robot, double longest_way) {
+  const std::size_t self = body_of(robot);
+  const double heeds = robots_[robot].body().heeds() + ways_[robot] + doubt, radius = bodies_.radius(self);
+  constexpr double turning = 0.5 * std::numbers::pi, most = 1.0 + turning;  // for bodies whose discs do not meet
+  bool alone = true;
+  const Vector2 extent = Vector2::Constant(heeds + most * longest_way + radius + bodies_.largest_radius());
+  const Vector2 center = bodies_.center(self);
+  bodies_.visit_box(center - extent, center + extent, [&](std::size_t other) {
+    if (other == self) return;
+    const bool moves_now = other >= moving_.size();
+    const double way = moves_now ? ways_[other - moving_.size()] : 0.0;
+    const double distance = (bodies_.center(other) - center).norm(), radii = radius + bodies_.radius(other);
+    if (distance - radii >= heeds + most * way) return;
+    if (way < distance && bodies_.separation(self, other) >= heeds + (1.0 + turning * radii / distance) * way) return;
+    alone = false;
+    if (moves_now) groups_.join(self, other);
+  });
+  is_alone_[robot] = alone;
+}
+
+/// What the robot touches belongs to its group.
+void Simulation::drive(std::size_t robot) {
   Robot& driving = robots_[robot];
-  const std::uint64_t contacts = driving.body().contacts();
-  driving.drive(around(robot));
-  if (driving.body().contacts() == contacts) return;
-  const Contact& contact = driving.body().last_contact();
-  if (const auto other = find(contact.other)) robots_[*other].touched_by(driving.name(), contact.point);
+  if (is_alone_[robot]) {
+    driving.drive(*world_);
+  } else {
+    const std::uint64_t contacts = driving.body().contacts();
+    driving.drive(Surroundings(*world_, bodies_, body_of(robot), groups_));
+    if (driving.body().contacts() != contacts) {
+      const Contact& contact = driving.body().last_contact();
+      if (const auto other = find(contact.other)) robots_[*other].touched_by(driving.name(), contact.point);
+    }
+  }
+  bodies_.move_on(body_of(robot), driving.body().hull());
 }
 
 }  // namespace kervan::sim

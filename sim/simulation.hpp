@@ -63,17 +63,22 @@ class Simulation {
  private:
   std::size_t body_of(std::size_t robot) const { return moving_.size() + robot; }
   Surroundings around(std::size_t robot) const { return {*world_, bodies_, body_of(robot)}; }
-  /// Calls work(i) for all i below `count`, shared out among the threads.
+  static constexpr std::size_t worth_sharing = 16;  // robots; waking somebody takes longer than doing less than this
+  /// Calls work(robot) for all of them, shared out among the threads, neighbours one after the other.
   template <class Work>
-  void for_each(std::size_t count, Work&& work) const {
-    constexpr std::size_t worth_sharing = 16;  // waking somebody takes longer than doing less than this
-    workers_->for_each(count, worth_sharing, work);
+  void for_each_robot(Work&& work) const {
+    const std::span<const std::uint32_t> bodies = bodies_.by_place();
+    workers_->for_each(bodies.size(), worth_sharing, [&](std::size_t i) {
+      if (bodies[i] >= moving_.size()) work(bodies[i] - moving_.size());
+    });
   }
   void add(RobotSetup setup);
   std::size_t place_of(std::string_view name) const;
   void move_obstacles(Duration dt);
   void drive(Duration dt);
-  void drive_among_others(std::size_t robot);
+  void measure(Duration dt);
+  void find_others_near(std::size_t robot, double longest_way);
+  void drive(std::size_t robot);
 
   std::shared_ptr<const World> world_;
   std::uint64_t seed_;
@@ -84,9 +89,10 @@ class Simulation {
   std::vector<std::size_t> order_;  // of the robots by their names
   Duration now_{0};
 
-  // Of each robot, within a step.
-  std::vector<double> ways_;               // m that it wants to go
-  std::vector<unsigned char> has_driven_;  // not bool: several threads write them
+  // Within a step.
+  Groups groups_;                        // of bodies that may meet; moving obstacles belong to all of them
+  std::vector<double> ways_;             // m; no point of the robot's body wants to go farther
+  std::vector<unsigned char> is_alone_;  // nobody is near the robot; not bool: several threads write them
 };
 
 }  // namespace kervan::sim

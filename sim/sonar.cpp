@@ -49,69 +49,115 @@ std::uint16_t Sonars::firing(std::size_t k, std::uint64_t round) const {
 
 void Sonars::measure(const Surroundings& around, const Pose2& pose, const RandomSource& random, std::uint64_t number,
                      std::span<double> ranges) {
-  assert(ranges.size() == size());
+  SonarVolley alone;
+  alone.add(*this, around, pose, random, number, ranges);
+  alone.fire();
+}
+
+void Sonars::read(const Round& round) const {
   if (settings_.firing == SonarFiring::sequential)
-    std::fill(ranges.begin(), ranges.end(), std::numeric_limits<double>::quiet_NaN());
-  const Round round{around, pose, random, number};
-  listen(round);
+    std::fill(round.ranges.begin(), round.ranges.end(), std::numeric_limits<double>::quiet_NaN());
   for (std::size_t k = 0; k < firing(); ++k) {
-    const std::uint16_t i = firing(k, number);
+    const std::uint16_t i = firing(k, round.number);
     double range = echoes_[i].distance;
     if (settings_.crosstalk > 0.0) range = disturbed(round, i, range);
     if (range < infinity) {
       // Both numbers have their places always, so that one imperfection does not change what the other does.
-      auto sequence = random.at(RandomUse::sonar, i, number);
+      auto sequence = round.random->at(RandomUse::sonar, i, round.number);
       const bool dropped = sequence.happens(settings_.drop_out);
       const double noisy = range * (1.0 + settings_.noise * sequence.gaussian());
       range = dropped || !(noisy <= ring_.max_range) ? infinity : std::max(noisy, ring_.min_range);
     }
-    ranges[i] = range;
+    round.ranges[i] = range;
   }
 }
 
-void Sonars::listen(const Round& round) {
-  // Of each thread one, because clearing them would take longer than a ring of a few rays.
-  static thread_local std::array<Vector2, most_rays> turned;
-  static thread_local std::array<RayHit, most_rays> hits;
-  static thread_local std::array<RayFan, most_rays> fans;
-  std::array<std::uint16_t, most_rays> sonars;  // of the fans
-  std::size_t rays = 0, count = 0;
-  const auto cast = [&] {
-    round.around.cast({fans.data(), count}, ring_.max_range, {hits.data(), rays});
-    const RayHit* hit = hits.data();
-    for (std::size_t k = 0; k < count; hit += fans[k++].directions.size())
-      take_echo(round, sonars[k], fans[k], hit, echoes_[sonars[k]]);
-    rays = count = 0;
+/// The rays of a volley that wait until they are cast.
+struct SonarVolley::Rays {
+  struct Owner {
+    std::size_t ring;
+    std::uint16_t sonar;
   };
+  std::array<Vector2, most_rays> turned;
+  std::array<RayHit, most_rays> hits;
+  std::array<RayFan, most_rays> fans;
+  std::array<Owner, most_rays> owners;  // of the fans
+  std::size_t count = 0, fan_count = 0;
+  double range = 0.0;  // m; of all of them
+};
+
+void SonarVolley::add(Sonars& sonars, const Surroundings& around, const Pose2& pose, const RandomSource& random,
+                      std::uint64_t round, std::span<double> ranges) {
+  assert(ranges.size() == sonars.size() && count_ < most);
+  if (sonars.size() > 0) rings_[count_++].emplace(Ring{&sonars, {around, pose, &random, round, ranges}});
+}
+
+void SonarVolley::fire() {
+  // Of each thread one, because clearing them would take longer than a ring of a few rays.
+  static thread_local Rays rays;
+  for (std::size_t r = 0; r < count_; ++r) aim(r, rays);
+  cast(rays);
+  for (std::size_t r = 0; r < count_; ++r) rings_[r]->sonars->read(rings_[r]->round);
+  count_ = 0;
+}
+
+void SonarVolley::aim(std::size_t ring, Rays& rays) {
+  auto& [sonars, round] = *rings_[ring];
+  if (rays.range != sonars->ring_.max_range) cast(rays);
+  rays.range = sonars->ring_.max_range;
   const Pose2& body = round.pose;
   const double c = std::cos(body.yaw), s = std::sin(body.yaw);
-  const auto all = static_cast<std::size_t>(settings_.rays);
-  for (std::size_t k = 0; k < firing(); ++k) {
-    const std::uint16_t i = firing(k, round.number);
-    const Pose2& mount = ring_.poses[i];
+  const auto all = static_cast<std::size_t>(sonars->settings_.rays);
+  for (std::size_t k = 0; k < sonars->firing(); ++k) {
+    const std::uint16_t i = sonars->firing(k, round.number);
+    const Pose2& mount = sonars->ring_.poses[i];
     const Vector2 origin(body.x + c * mount.x - s * mount.y, body.y + s * mount.x + c * mount.y);
-    echoes_[i] = {};
+    sonars->echoes_[i] = {};
     for (std::size_t first = 0; first < all;) {
-      if (rays == most_rays) cast();
-      const std::size_t now = std::min(most_rays - rays, all - first);
+      if (rays.count == most_rays) cast(rays);
+      const std::size_t now = std::min(most_rays - rays.count, all - first);
+      Vector2* const turned = &rays.turned[rays.count];
       for (std::size_t ray = 0; ray < now; ++ray) {
-        const Vector2& d = directions_[i * all + first + ray];
-        turned[rays + ray] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
+        const Vector2& d = sonars->directions_[i * all + first + ray];
+        turned[ray] = {c * d.x() - s * d.y(), s * d.x() + c * d.y()};
       }
-      fans[count] = {origin, {&turned[rays], now}};
-      sonars[count++] = i;
-      rays += now;
+      rays.fans[rays.fan_count] = {origin, {turned, now}};
+      rays.owners[rays.fan_count++] = {ring, i};
+      rays.count += now;
       first += now;
     }
   }
-  if (rays > 0) cast();
+}
+
+void SonarVolley::cast(Rays& rays) {
+  if (rays.count == 0) return;
+  // Only an incidence limit asks how a surface is met.
+  const auto normals = [this](std::size_t ring) {
+    return rings_[ring]->sonars->settings_.incidence_limit ? Normals::wanted : Normals::unwanted;
+  };
+  Normals any = Normals::unwanted;
+  for (std::size_t r = rays.owners[0].ring; r <= rays.owners[rays.fan_count - 1].ring; ++r)
+    if (normals(r) == Normals::wanted) any = Normals::wanted;
+  const std::span<const RayFan> fans{rays.fans.data(), rays.fan_count};
+  rings_[0]->round.around.world().cast(fans, rays.range, {rays.hits.data(), rays.count}, any);
+  RayHit* hits = rays.hits.data();
+  for (std::size_t first = 0; first < rays.fan_count;) {
+    const std::size_t r = rays.owners[first].ring;
+    std::size_t last = first, count = 0;
+    for (; last < rays.fan_count && rays.owners[last].ring == r; ++last) count += fans[last].directions.size();
+    const auto& [sonars, round] = *rings_[r];
+    round.around.cast_among_bodies(fans.subspan(first, last - first), rays.range, {hits, count}, normals(r));
+    for (; first < last; hits += fans[first++].directions.size())
+      sonars->take_echo(round, rays.owners[first].sonar, fans[first], hits, sonars->echoes_[rays.owners[first].sonar]);
+  }
+  rays.count = rays.fan_count = 0;
 }
 
 void Sonars::take_echo(const Round& round, std::uint16_t i, const RayFan& rays, const RayHit* hits,
                        Echo& nearest) const {
   double min_cosine = min_cosine_;
   if (settings_.incidence_drop_off > 0.0) {
-    auto sequence = round.random.at(RandomUse::sonar_incidence, i, round.number);
+    auto sequence = round.random->at(RandomUse::sonar_incidence, i, round.number);
     min_cosine = std::cos(*settings_.incidence_limit - settings_.incidence_drop_off * sequence.uniform());
   }
   for (const Vector2& direction : rays.directions) {
@@ -125,7 +171,7 @@ void Sonars::take_echo(const Round& round, std::uint16_t i, const RayFan& rays, 
 double Sonars::disturbed(const Round& round, std::size_t i, double own) const {
   const std::size_t others = firing() - 1;
   if (others == 0) return own;
-  auto sequence = round.random.at(RandomUse::sonar_crosstalk, static_cast<std::uint16_t>(i), round.number);
+  auto sequence = round.random->at(RandomUse::sonar_crosstalk, static_cast<std::uint16_t>(i), round.number);
   if (!(sequence.uniform() < settings_.crosstalk)) return own;
   // One of the first of them; the last one stands in for this one.
   const auto place = static_cast<std::size_t>(sequence.uniform() * static_cast<double>(others));

@@ -15,6 +15,7 @@
 /// behind the transducer are not heard; that they may be outside its cone is what makes crosstalk a nuisance.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -59,24 +60,27 @@ class Sonars {
                std::span<double> ranges);
 
  private:
+  friend class SonarVolley;
+
   /// Where a pulse comes back from.
   struct Echo {
     double distance = infinity;       // m from the transducer
     Vector2 point = Vector2::Zero();  // in map
   };
-  /// One round: everything that a sonar needs to fire.
+  /// One round: everything that a ring needs to fire.
   struct Round {
-    const Surroundings& around;
-    const Pose2& pose;
-    const RandomSource& random;
+    Surroundings around;
+    Pose2 pose;
+    const RandomSource* random;
     std::uint64_t number;
+    std::span<double> ranges;
   };
 
   /// How many sonars fire in a round, and the k-th of them.
   std::size_t firing() const;
   std::uint16_t firing(std::size_t k, std::uint64_t round) const;
-  /// Fills echoes_ for those that fire.
-  void listen(const Round& round);
+  /// Makes what is in echoes_ for those that fire the readings.
+  void read(const Round& round) const;
   /// The nearest echo along these rays, which ended so, comes into `nearest` if it is nearer.
   void take_echo(const Round& round, std::uint16_t i, const RayFan& rays, const RayHit* hits, Echo& nearest) const;
   /// Half of the shortest way on which a pulse comes to sonar i, whose own echo is at `own`, if it hears another one.
@@ -87,6 +91,38 @@ class Sonars {
   double min_cosine_;                // of the incidence angle
   std::vector<Vector2> directions_;  // of all rays in the body, `rays` for each sonar
   std::vector<Echo> echoes_;         // of each sonar before noise, of the world or of another body, in this round
+};
+
+/// Rounds of several robots in one world that fire at once. Their rays go through the world together, which is quicker
+/// than one ring after the other; what they read is the same.
+class SonarVolley {
+ public:
+  static constexpr std::size_t most = 8;  // rounds
+
+  SonarVolley() = default;
+  SonarVolley(const SonarVolley&) = delete;
+  SonarVolley& operator=(const SonarVolley&) = delete;
+
+  /// As Sonars::measure, but `ranges` are read in fire(); until then nothing may move and what is given must live.
+  void add(Sonars& sonars, const Surroundings& around, const Pose2& pose, const RandomSource& random,
+           std::uint64_t round, std::span<double> ranges);
+
+  /// All that have been added measure. They are at most `most`.
+  void fire();
+
+ private:
+  struct Ring {
+    Sonars* sonars;
+    Sonars::Round round;
+  };
+  struct Rays;
+  /// Puts the rays of a ring to those that wait.
+  void aim(std::size_t ring, Rays& rays);
+  /// The echoes of the rays that wait go to their sonars.
+  void cast(Rays& rays);
+
+  std::array<std::optional<Ring>, most> rings_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace kervan::sim

@@ -103,25 +103,32 @@ class Standing {
 };
 
 /// Where the ray meets the edge of a body, if it is nearer than `best` and no farther than `range`, comes into `best`.
-void meet(const Ray& ray, std::span<const Vector2> corners, double range, RayHit& best) {
-  // An edge is worth asking about if its ends do not both lie well on the same side of the ray.
-  constexpr double well = 1e-6;  // m
-  const auto left = [&](const Vector2& corner) { return cross(ray.direction, corner - ray.origin); };
-  const double first = left(corners[0]);
-  double from = first;
+void meet(const Ray& ray, std::span<const Vector2> corners, double range, Normals normals, RayHit& best) {
+  // An edge is worth asking about if its ends do not both lie well on the same side of the ray. Which ones are is found
+  // out without a branch for each: no processor could guess it.
+  constexpr double well = 1e-6;      // m
+  constexpr std::size_t edges = 31;  // at a time; with the corner at the end of the last they make 32 bits
   std::size_t met = corners.size();
-  for (std::size_t k = 0; k < corners.size(); ++k) {
-    const double to = k + 1 < corners.size() ? left(corners[k + 1]) : first;
-    if (std::min(from, to) <= well && std::max(from, to) >= -well) {
+  for (std::size_t first = 0; first < corners.size(); first += edges) {
+    const std::size_t count = std::min(edges, corners.size() - first);
+    std::uint32_t left = 0, right = 0;  // the corners that are not well on the other side
+    for (std::size_t k = 0; k <= count; ++k) {
+      const Vector2& corner = corners[first + k < corners.size() ? first + k : 0];
+      const double side = cross(ray.direction, corner - ray.origin);
+      left |= static_cast<std::uint32_t>(side >= -well) << k;
+      right |= static_cast<std::uint32_t>(side <= well) << k;
+    }
+    const std::uint32_t all = (std::uint32_t{1} << count) - 1;
+    for (std::uint32_t ask = (left | left >> 1) & (right | right >> 1) & all; ask != 0; ask &= ask - 1) {
+      const std::size_t k = first + static_cast<std::size_t>(std::countr_zero(ask));
       const double distance = hit_distance(ray, edge(corners, k));
       if (distance < best.distance && distance <= range) {
         best.distance = distance;
         met = k;
       }
     }
-    from = to;
   }
-  if (met < corners.size()) best.normal = hit_normal(ray, edge(corners, met));
+  if (met < corners.size() && normals == Normals::wanted) best.normal = hit_normal(ray, edge(corners, met));
 }
 
 }  // namespace
@@ -154,7 +161,7 @@ Clearance clearance(const Bodies& bodies, std::size_t other, const Outline& outl
 
 Room Surroundings::room(const Outline& outline, const Pose2& pose) const {
   Room room;
-  room.all = world_.clearance(outline, pose, &room.shape);
+  room.all = world_->clearance(outline, pose, &room.shape);
   room.world = room.all.distance;
   take_room(outline, pose, room);
   return room;
@@ -207,9 +214,14 @@ double Surroundings::room_among_bodies(const Outline& outline, const Pose2& pose
   return room;
 }
 
-void Surroundings::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const {
+void Surroundings::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits, Normals normals) const {
+  world_->cast(fans, range, hits, normals);
+  cast_among_bodies(fans, range, hits, normals);
+}
+
+void Surroundings::cast_among_bodies(std::span<const RayFan> fans, double range, std::span<RayHit> hits,
+                                     Normals normals) const {
   assert(std::isfinite(range));
-  world_.cast(fans, range, hits);
   if (!bodies_ || hits.empty()) return;
 
   // Only bodies that reach into the box around all rays, as far as the world lets them go, can be met.
@@ -226,7 +238,7 @@ void Surroundings::cast(std::span<const RayFan> fans, double range, std::span<Ra
   bodies_->visit_box(low - extent, high + extent, [&](std::size_t body) {
     if (left_out(body)) return;
     paths.visit_near(bodies_->center(body), bodies_->radius(body), [&](std::size_t i, const Ray& ray) {
-      meet(ray, bodies_->corners(body), range, hits[i]);
+      meet(ray, bodies_->corners(body), range, normals, hits[i]);
       return std::min(range, hits[i].distance);
     });
   });

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sim/bodies.hpp"
+#include "sim/groups.hpp"
 #include "sim/world.hpp"
 
 namespace kervan::sim {
@@ -28,11 +29,16 @@ class Surroundings {
       : Surroundings(world, bodies, self, self + 1) {}
   /// The bodies from `first` on are left out, up to the one before `last`.
   Surroundings(const World& world, const Bodies& bodies, std::size_t first, std::size_t last)
-      : world_(world), bodies_(first > 0 || last < bodies.size() ? &bodies : nullptr), first_(first), last_(last) {}
+      : world_(&world), bodies_(first > 0 || last < bodies.size() ? &bodies : nullptr), first_(first), last_(last) {}
+  /// Of the bodies only those of the group of `self` are there.
+  Surroundings(const World& world, const Bodies& bodies, std::size_t self, const Groups& groups)
+      : Surroundings(world, bodies, self) {
+    groups_ = &groups;
+  }
   /// A world in which nothing moves.
-  Surroundings(const World& world) : world_(world) {}  // NOLINT(google-explicit-constructor): it is nothing more
+  Surroundings(const World& world) : world_(&world) {}  // NOLINT(google-explicit-constructor): it is nothing more
 
-  const World& world() const { return world_; }
+  const World& world() const { return *world_; }
 
   /// How much room the body has at `pose`. Exact; of bodies that are equally near the first by name.
   Room room(const Outline& outline, const Pose2& pose) const;
@@ -50,15 +56,22 @@ class Surroundings {
 
   /// What rays meet, as World::cast: the nearest of the world and the bodies. `range` is finite. Exact as to the
   /// bodies.
-  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const;
+  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits,
+            Normals normals = Normals::wanted) const;
+
+  /// The bodies' part of that: `hits` is what the rays meet of the world, and becomes what they meet at all.
+  void cast_among_bodies(std::span<const RayFan> fans, double range, std::span<RayHit> hits, Normals normals) const;
 
  private:
   void take_room(const Outline& outline, const Pose2& pose, Room& room) const;
-  bool left_out(std::size_t body) const { return body >= first_ && body < last_; }
+  bool left_out(std::size_t body) const {
+    return (body >= first_ && body < last_) || (groups_ && groups_->apart(first_, body));
+  }
 
-  const World& world_;
+  const World* world_;
   const Bodies* bodies_ = nullptr;  // nullptr: there are no others
   std::size_t first_ = 0, last_ = 0;
+  const Groups* groups_ = nullptr;  // nullptr: the bodies of all groups are there
 };
 
 /// How near a body at `pose` and one of `bodies` are; 0 when they touch or overlap. Points in map, `on_obstacle` on the

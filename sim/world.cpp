@@ -78,7 +78,7 @@ std::optional<RayHit> World::cast(const Ray& ray, double range) const {
   return hit;
 }
 
-void World::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const {
+void World::cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits, Normals normals) const {
   if (hits.size() > most_rays) throw std::invalid_argument("too many rays at once");
   std::fill(hits.begin(), hits.end(), RayHit{});
   std::array<float, most_rays> distances;
@@ -91,7 +91,10 @@ void World::cast(std::span<const RayFan> fans, double range, std::span<RayHit> h
     for (const RayFan& fan : fans)
       for (const Vector2& direction : fan.directions) {
         const double distance = distances[i];
-        if (distance < hits[i].distance && distance <= range) hits[i] = {distance, map.normal(direction, faces[i])};
+        if (distance < hits[i].distance && distance <= range) {
+          hits[i].distance = distance;
+          if (normals == Normals::wanted) hits[i].normal = map.normal(direction, faces[i]);
+        }
         ++i;
       }
   }

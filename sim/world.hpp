@@ -54,9 +54,6 @@ class Solids {
   ShapeMap map_;
 };
 
-/// So many rays can be asked about at once.
-inline constexpr std::size_t most_rays = 256;
-
 class World {
  public:
   /// Throws std::invalid_argument if a number is not finite, a segment or a box has no extent, a radius is not
@@ -70,7 +67,8 @@ class World {
 
   /// The same for up to most_rays of them: `hits` is where those of the fans end, one after the other; there are as
   /// many. Throws std::invalid_argument if there are too many.
-  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits) const;
+  void cast(std::span<const RayFan> fans, double range, std::span<RayHit> hits,
+            Normals normals = Normals::wanted) const;
 
   /// The nearest obstacle to a point, low or not, no farther than `range`; nothing if there is none. Exact.
   std::optional<NearestObstacle> nearest(const Vector2& point, double range = infinity) const;

@@ -132,6 +132,29 @@ TEST(Threads, TheCrowdOfTheseTestsDoesMeet) {
   EXPECT_GT(others, simulation.robots().size() / 3);
 }
 
+TEST(Threads, LongRobotsThatTurnOnTheSpotDoNotTurnIntoEachOther) {
+  const auto nothing = std::make_shared<const World>(Obstacles{});
+  const Outline bar({{0.6, -0.1}, {0.6, 0.1}, {-0.6, 0.1}, {-0.6, -0.1}});
+  for (const auto& [a, b, distance] : {std::array{1.22, 0.66, 0.966}, {0.75, 1.27, 1.046}, {1.02, 4.05, 0.908}}) {
+    // Those who were all but touched once heed nobody who stays farther away than a millimetre.
+    std::vector<RobotSetup> setups{perfect("a", {0.0, 0.0, a}), perfect("b", {5.0, 0.0, 0.0}),
+                                   perfect("c", Pose2{0.0, 0.0, a} * Pose2{0.9001, 0.0, 0.0}),
+                                   perfect("d", {5.9001, 0.0, 0.0})};
+    for (RobotSetup& setup : setups) setup.model.drive.angular_acceleration = 100.0;
+    for (std::size_t i : {0u, 1u}) setups[i].model.outline = bar;
+    Simulation simulation(nothing, setups, 1);
+    simulation.teleport("c", {20.0, 0.0, 0.0});
+    simulation.teleport("b", {0.0, distance, b});
+    simulation.command(0, {0.0, 1.72});
+    simulation.command(1, {0.0, 1.72});
+    simulation.step(240ms);
+    Bodies other;
+    other.add("b", bar, simulation.robots()[1].pose());
+    EXPECT_GT(clearance(other, 0, bar, simulation.robots()[0].pose()).distance, 0.0) << distance << " m apart";
+    EXPECT_EQ(simulation.robots()[1].body().contacts(), 1u) << distance << " m apart";
+  }
+}
+
 TEST(Workers, DoEveryPieceOfWorkOnce) {
   for (const int threads : {1, 2, 4}) {
     workers::WorkerPool pool(threads);
