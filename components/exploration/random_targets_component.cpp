@@ -87,13 +87,13 @@ class RandomTargets final : public Component {
   Input<nav_msgs::msg::Path> route_{this, "route", qos::latched, &RandomTargets::on_route, "What is planned."};
   Input<kervan_msgs::msg::GoalStatus> status_{this, "goal_status", qos::latched.optional(), &RandomTargets::on_status,
                                               "What has become of the target."};
-  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_raw", qos::command.max_age(500ms),
+  Input<geometry_msgs::msg::TwistStamped> wanted_{this, "cmd_vel_wanted", qos::command.max_age(500ms),
                                                   &RandomTargets::on_command, "Speed that the controller wants."};
   Input<kervan_msgs::msg::Outline> world_{this, "world", qos::latched.optional(), &RandomTargets::on_world,
                                           "What targets keep away from; without it they lie anywhere in the area."};
   Input<kervan_msgs::msg::Contact> contact_{this, "contact", qos::event.optional(), "Every touch of the robot."};
   Output<geometry_msgs::msg::PoseStamped> goal_{this, "goal", qos::latched, "The present target."};
-  Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_unstuck", qos::command,
+  Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command,
                                                     "The controller's command, or what gets a stuck robot free."};
   Timer tick_{this, params_.period, &RandomTargets::on_tick};
   std::string goal_id_;

@@ -24,7 +24,7 @@ const ValueMap in_ten_by_ten = {{"area", points({{0, 0}, {10, 10}})}};
 void be_at(Harness& harness, const geometry::Pose2& pose, double linear = 0.5) {
   for (int i = 0; i < 10; ++i) {
     harness.feed("truth", odometry_at(pose));
-    harness.feed("cmd_vel_raw", twist_of(linear, 0.0));
+    harness.feed("cmd_vel_wanted", twist_of(linear, 0.0));
     harness.advance(50ms);
   }
 }
@@ -59,14 +59,14 @@ TEST(RandomTargetsComponent, PassesCommandsOnUntilTheRobotIsStuckAndThenGetsItFr
   Harness harness("exploration/random_targets", in_ten_by_ten);
   be_at(harness, {5, 5, 0});
   const PoseStamped first = *harness.latest<PoseStamped>("goal");
-  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_unstuck")->twist.linear.x, 0.5);
+  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_raw")->twist.linear.x, 0.5);
   for (int i = 0; i < 9; ++i) be_at(harness, {5, 5, 0});
-  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_unstuck")->twist.linear.x, -0.3);
+  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_raw")->twist.linear.x, -0.3);
   be_at(harness, {4.4, 5, 0});
-  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_unstuck")->twist.linear.x, 0.0);
-  EXPECT_EQ(std::abs(harness.latest<TwistStamped>("cmd_vel_unstuck")->twist.angular.z), 0.75);
+  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_raw")->twist.linear.x, 0.0);
+  EXPECT_EQ(std::abs(harness.latest<TwistStamped>("cmd_vel_raw")->twist.angular.z), 0.75);
   for (int i = 0; i < 30; ++i) be_at(harness, {4.4, 5, 0}, 0.0);  // it cannot turn
-  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_unstuck")->twist, geometry_msgs::msg::Twist()) << "the controller's";
+  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_raw")->twist, geometry_msgs::msg::Twist()) << "the controller's";
   EXPECT_NE(harness.latest<PoseStamped>("goal")->pose, first.pose);
 }
 
@@ -110,7 +110,7 @@ TEST(RandomTargetsComponent, SaysWhatItLacks) {
   EXPECT_EQ(blind.reason(), "truth: nothing received yet");
   be_at(blind, {std::numeric_limits<double>::quiet_NaN(), 0, 0});
   EXPECT_EQ(blind.reason(), "truth: the pose is not finite");
-  EXPECT_EQ(blind.latest<TwistStamped>("cmd_vel_unstuck")->twist.linear.x, 0.5) << "the controller drives on";
+  EXPECT_EQ(blind.latest<TwistStamped>("cmd_vel_raw")->twist.linear.x, 0.5) << "the controller drives on";
   EXPECT_FALSE(blind.latest<PoseStamped>("goal"));
 
   Harness nowhere("exploration/random_targets", {{"room", 0.4}});
