@@ -42,6 +42,7 @@ struct MapReportParams {
   std::vector<geometry::Vector2> nodes;
   std::string title = "map";
   double tolerance = 0.10;
+  bool goals = true;
   Duration period = 100ms;
   Duration snapshots{};
 
@@ -51,6 +52,7 @@ struct MapReportParams {
     v(nodes, "nodes", {.unit = "m", .help = "Waypoints to draw with their numbers; none: those of the routes."});
     v(title, "title", {.help = "Headline of the drawing."});
     v(tolerance, "tolerance", {.unit = "m", .min = 0.001, .max = 100.0, .help = "Radius of the circle around a goal."});
+    v(goals, "goals", {.help = "Shows the robots' goals; not for robots that get one after the other."});
     v(period, "period", {.min = 0.001, .max = 60.0, .help = "Time between two rows of a robot."});
     v(snapshots, "snapshots",
       {.min = 0.0, .max = 3600.0, .help = "Draws what the sensors saw every so often; 0: never."});
@@ -163,13 +165,13 @@ class Subject {
     return to_svg(arbitration_log_, title, end);
   }
 
-  DrawnRobot drawing(double tolerance, const kervan_msgs::msg::MissionResult* result) const {
+  DrawnRobot drawing(const MapReportParams& params, const kervan_msgs::msg::MissionResult* result) const {
     DrawnRobot robot = drawn_;
-    robot.tolerance = tolerance;
+    robot.tolerance = params.tolerance;
     for (DrawnStretch& stretch : robot.stretches) stretch.colour = arbitration_log_.colour_of(stretch.behaviour);
     if (const auto* route = route_.latest())
       for (const auto& pose : route->poses) robot.route.push_back(geometry::position_of(pose.pose));
-    if (const auto* goal = goal_.latest()) mark_goal(robot, geometry::position_of(goal->pose));
+    if (const auto* goal = goal_.latest(); goal && params.goals) mark_goal(robot, geometry::position_of(goal->pose));
     if (result)
       for (const auto& figures : result->robots)
         if (figures.robot == robot.name) add_figures(robot, figures);
@@ -339,7 +341,7 @@ class MapReportComponent final : public Component {
                                                                          : "aborted";
     drawing.subtitle = "ended after " + decimal(seconds(now - started_), 1) + " s";
     if (result && !result->reason.empty()) drawing.subtitle += "; " + result->reason;
-    for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_.tolerance, result));
+    for (const auto& robot : robots_) drawing.robots.push_back(robot.drawing(params_, result));
     const auto has_goal = [](const DrawnRobot& robot) { return robot.goal.has_value(); };
     if (!result && std::none_of(drawing.robots.begin(), drawing.robots.end(), has_goal)) drawing.result.clear();
     drawing.map = std::move(map_);

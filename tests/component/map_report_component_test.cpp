@@ -116,7 +116,7 @@ struct TemporaryFolder {
   ~TemporaryFolder() { std::filesystem::remove_all(path); }
 };
 
-void run(const std::filesystem::path& folder, Duration length, double snapshots = 0.0) {
+void run(const std::filesystem::path& folder, Duration length, double snapshots = 0.0, bool goals = true) {
   static const ComponentClass script = define<Script>("test/script");
   ComponentRegistry registry(ComponentRegistry::default_folders());
   registry.add(script);
@@ -126,11 +126,12 @@ void run(const std::filesystem::path& folder, Duration length, double snapshots 
   spec.domain.network = false;
   spec.log_to_console = false;
   spec.run_folder = folder;
-  spec.components = {{.name = "script", .type = "test/script", .parameters = {}, .ports = {}},
-                     {.name = "report",
-                      .type = "observe/map_report",
-                      .parameters = {{"robots", ValueList{"r1"}}, {"title", "lab"}, {"snapshots", snapshots}},
-                      .ports = {}}};
+  spec.components = {
+      {.name = "script", .type = "test/script", .parameters = {}, .ports = {}},
+      {.name = "report",
+       .type = "observe/map_report",
+       .parameters = {{"robots", ValueList{"r1"}}, {"title", "lab"}, {"snapshots", snapshots}, {"goals", goals}},
+       .ports = {}}};
   runtime::Container container(spec, registry);
   container.activate();
   container.advance(Time(length));
@@ -191,6 +192,14 @@ TEST(MapReportComponent, MarksAnUnfinishedRunAsAborted) {
   const TemporaryFolder folder;
   run(folder.path, 1s);
   EXPECT_TRUE(has(content_of(folder.path / "map.svg"), ">aborted</tspan>"));
+}
+
+TEST(MapReportComponent, SaysNothingOfGoalsUnlessTheyAreToBeShown) {
+  const TemporaryFolder folder;
+  run(folder.path, 1s, 0.0, false);
+  const std::string map = content_of(folder.path / "map.svg");
+  EXPECT_FALSE(has(map, ">aborted</tspan>"));
+  EXPECT_FALSE(has(map, ">did not reach the goal</tspan>"));
 }
 
 std::size_t count(const std::string& text, const std::string& part) {

@@ -62,7 +62,7 @@ Scenario load_scenario(const fs::path& file) {
     if (*scenario.first_seed > *scenario.last_seed) seeds->fail("the first is above the last");
   }
   const Node& expect = root.required("expect");
-  expect.only_keys({"result", "exit_code", "robots", "figures"});
+  expect.only_keys({"result", "exit_code", "robots", "figures", "warnings"});
   scenario.result = expect.required("result").as_choice({"success", "failed", "aborted"});
   scenario.exit_code = static_cast<int>(expect.required("exit_code").as_integer());
   if (const Node* robots = expect.optional("robots"))
@@ -70,6 +70,8 @@ Scenario load_scenario(const fs::path& file) {
   if (const Node* components = expect.optional("figures"))
     for (const Node& component : components->map())
       for (const Node& figure : component.map()) scenario.figures[component.name][figure.name] = bounds(figure);
+  if (const Node* warnings = expect.optional("warnings"))
+    for (const Node& warning : warnings->list()) scenario.warnings.push_back(warning.as_text());
   return scenario;
 }
 

@@ -41,6 +41,7 @@ struct Scenario {
   int exit_code = 0;
   std::map<std::string, RobotExpectation> robots;
   std::map<std::string, std::map<std::string, Bounds>> figures;  ///< of components, as summary.json has them
+  std::vector<std::string> warnings;                             ///< parts of those that the console may show
 };
 
 /// Throws ConfigError for anything that a scenario cannot hold.
