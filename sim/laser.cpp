@@ -10,6 +10,8 @@ namespace kervan::sim {
 
 Laser::Laser(const LaserMount& mount, const LaserSettings& settings) : mount_(mount), settings_(settings) {
   if (!(settings.noise >= 0.0)) throw std::invalid_argument("the noise of the laser must not be negative");
+  if (!(settings.noise_share >= 0.0))
+    throw std::invalid_argument("the noise of the laser must not be a negative share of the range");
   if (!(settings.drop_out >= 0.0 && settings.drop_out <= 1.0))
     throw std::invalid_argument("the drop-out probability of the laser must be in [0, 1]");
   for (int i = 0; i < mount.beams; ++i)
@@ -34,10 +36,12 @@ void Laser::measure(const Surroundings& around, const Pose2& pose, const RandomS
     for (std::size_t i = 0; i < count; ++i) {
       double range = hits[i].distance;
       if (range < infinity) {
-        // Both numbers have their places always, so that one imperfection does not change what the other does.
+        // All numbers have their places always, so that one imperfection does not change what the other does.
         auto sequence = random.at(RandomUse::laser, static_cast<std::uint16_t>(first + i), scan);
         const bool dropped = sequence.happens(settings_.drop_out);
+        const double exact = range;
         range += sequence.uniform(-settings_.noise, settings_.noise);
+        if (settings_.noise_share > 0.0) range += settings_.noise_share * exact * sequence.gaussian();
         if (dropped || !(range <= mount_.max_range))
           range = infinity;
         else if (range < mount_.min_range)

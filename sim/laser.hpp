@@ -11,10 +11,11 @@
 
 namespace kervan::sim {
 
-/// How far the simulated laser is from perfect. Both may be 0.
+/// How far the simulated laser is from perfect. All may be 0.
 struct LaserSettings {
-  double noise = 0.005;   ///< m; bound of a uniform error of each range
-  double drop_out = 0.0;  ///< probability that a beam brings nothing back, in [0, 1]
+  double noise = 0.005;      ///< m; bound of a uniform error of each range
+  double noise_share = 0.0;  ///< standard deviation of another error, as a share of the range
+  double drop_out = 0.0;     ///< probability that a beam brings nothing back, in [0, 1]
 };
 
 class Laser {

@@ -40,7 +40,11 @@ RobotSetup RobotParams::setup(const std::string& name) const {
     setup.sonar.incidence_limit = sonar_incidence_limit;
   setup.sonar.crosstalk = sonar_crosstalk;
   setup.laser_period = laser_period;
-  setup.laser = {.noise = laser_noise, .drop_out = laser_drop_out};
+  setup.laser = {.noise = laser_noise, .noise_share = laser_noise_share, .drop_out = laser_drop_out};
+  if (setup.model.laser && laser_range > 0.0) {
+    if (laser_range <= setup.model.laser->min_range) refuse("laser_range", "is no more than the nearest it measures");
+    setup.model.laser->max_range = laser_range;
+  }
   setup.touch_range = touch_range;
   return setup;
 }

@@ -43,6 +43,8 @@ struct RobotParams {
   double sonar_crosstalk = 0.0;
   Duration laser_period = std::chrono::milliseconds(100);
   double laser_noise = 0.005;
+  double laser_noise_share = 0.0;
+  double laser_range = 0.0;
   double laser_drop_out = 0.0;
   BumperSet bumpers = BumperSet::none;
   double touch_range = 0.02;
@@ -102,6 +104,10 @@ struct RobotParams {
     v(laser_period, "laser_period", {.min = 0.001, .max = 10.0, .help = "Time between two sweeps of the laser."});
     v(laser_noise, "laser_noise",
       {.unit = "m", .min = 0.0, .max = 1.0, .help = "Bound of the uniform error of each range of the laser."});
+    v(laser_noise_share, "laser_noise_share",
+      {.min = 0.0, .max = 1.0, .help = "Standard deviation of another error of them, as a share of the distance."});
+    v(laser_range, "laser_range",
+      {.unit = "m", .min = 0.0, .max = 1000.0, .help = "How far the laser measures; 0: as the model's file says."});
     v(laser_drop_out, "laser_drop_out",
       {.min = 0.0, .max = 1.0, .help = "Probability that a beam of the laser brings nothing back."});
     v(bumpers, "bumpers",
