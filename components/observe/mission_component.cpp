@@ -56,6 +56,8 @@ struct MissionComponentParams {
       {.unit = "m", .min = 0.001, .max = 100.0, .help = "A robot standing this near to its goal has reached it."});
     v(mission.timeout, "timeout", {.min = 0.1, .max = 1e6, .help = "After this the mission has failed."});
     v(mission.rest_time, "rest_time", {.min = 0.0, .max = 60.0, .help = "How long a robot must stand at a goal."});
+    v(mission.standing, "standing", {.help = "Whether a robot must stand at a goal; else it is enough to come near."});
+    v(mission.contact_ends, "contact_ends", {.help = "Whether the mission has failed when a robot touches something."});
     v(period, "period", {.min = 0.001, .max = 1.0, .help = "Time between two looks at the robots."});
   }
 };
@@ -106,6 +108,7 @@ class Contender {
   bool reached() const { return score_->figures().outcome == observe::MissionOutcome::reached; }
   bool gave_up() const { return score_->figures().outcome == observe::MissionOutcome::given_up; }
   const std::string& why() const { return why_; }  ///< it gave up
+  bool touched() const { return score_->figures().outcome == observe::MissionOutcome::touched; }
   const std::string& name() const { return name_; }
   std::string missing() const { return truth_.missing(); }
 
@@ -223,20 +226,20 @@ class MissionComponent final : public Component {
 
   void on_tick(Time now) {
     if (judged_) return;
-    bool ended = true, reached = true, given_up = false;
+    bool ended = true, reached = true, over = false;
     std::string missing;
     for (auto& robot : robots_) {
       look(robot, now);
       ended = ended && robot.score().ended();
       reached = reached && robot.reached();
-      given_up = given_up || robot.gave_up();
+      over = over || robot.gave_up() || robot.touched();
       if (missing.empty()) missing = robot.missing();
     }
     if (missing.empty())
       report_active();
     else if (now - activated_ >= params_.period)  // At the first tick nobody can have published yet.
       report_degraded(missing);
-    if (!ended && !given_up) {
+    if (!ended && !over) {
       if (now - saved_ < 1s) return;
       saved_ = now;
       return remember();
@@ -254,8 +257,11 @@ class MissionComponent final : public Component {
     if (!run_folder().empty()) fs::remove(memory_file(), ignored);
   }
 
-  /// Who gave up and why; if nobody did, who did not arrive and how far away it was; empty if all did.
+  /// Who touched something, if that is the end; who gave up and why; if nobody did, who did not arrive and how far away
+  /// it was; empty if all did.
   std::string reason() const {
+    for (const auto& robot : robots_)
+      if (robot.touched()) return robot.name() + " has touched something";
     std::string text;
     for (const auto& robot : robots_)
       if (robot.gave_up()) text += (text.empty() ? "" : "; ") + robot.name() + " has given up: " + robot.why();

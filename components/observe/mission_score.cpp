@@ -30,13 +30,14 @@ void MissionScore::truth(Time now, const geometry::Pose2& pose, const geometry::
   }
   last_position_ = position;
 
-  const bool stands = std::abs(twist.linear) <= params_.rest_speed && std::abs(twist.angular) <= params_.rest_turn;
+  const bool stands = !params_.standing ||
+                      (std::abs(twist.linear) <= params_.rest_speed && std::abs(twist.angular) <= params_.rest_turn);
   if (!stands || !(figures_.error <= params_.tolerance)) {
     at_rest_since_.reset();
   } else if (!at_rest_since_) {
     at_rest_since_ = now;
   }
-  if (at_rest_since_ && now - *at_rest_since_ >= params_.rest_time) {
+  if (at_rest_since_ && (!params_.standing || now - *at_rest_since_ >= params_.rest_time)) {
     if (figures_.goal + 1 == params_.goals.size()) {
       figures_.outcome = MissionOutcome::reached;
       figures_.time = seconds(*at_rest_since_ - start_);
@@ -65,6 +66,10 @@ void MissionScore::give_up(Time now) {
 }
 
 void MissionScore::tick(Time now) {
+  if (!ended() && params_.contact_ends && figures_.contacts > 0) {
+    figures_.outcome = MissionOutcome::touched;
+    figures_.time = seconds(now - start_);
+  }
   if (ended() || now - start_ < params_.timeout) return;
   figures_.outcome = MissionOutcome::timed_out;
   figures_.time = seconds(now - start_);

@@ -19,9 +19,11 @@ struct MissionParams {
   double rest_speed = 0.005;                            ///< m/s, below which the robot stands
   double rest_turn = 0.01;                              ///< rad/s, the same for turning
   Duration rest_time = std::chrono::milliseconds(500);  ///< how long it must stand within the tolerance
+  bool standing = true;       ///< whether it must stand at a goal; else it is enough to come within the tolerance
+  bool contact_ends = false;  ///< whether the mission has failed when the robot has touched something
 };
 
-enum class MissionOutcome { running, reached, timed_out, given_up };
+enum class MissionOutcome { running, reached, timed_out, given_up, touched };
 
 /// The figures so far. Distances are in metres, between the robot's base_link and the goal it drives to, or drove to
 /// last.
@@ -46,8 +48,9 @@ struct MissionMemory {
   std::optional<double> min_clearance;  ///< m
 };
 
-/// A goal is reached by standing, for rest_time, within the tolerance. Passing it does not count, nor does standing
-/// elsewhere end the mission; only giving up and the time-out do. Once it has ended the figures no longer change.
+/// A goal is reached by standing, for rest_time, within the tolerance; passing it counts only if that is asked for.
+/// Standing elsewhere does not end the mission: only giving up and the time-out do, and contacts if that is asked for.
+/// Once it has ended the figures no longer change.
 class MissionScore {
  public:
   MissionScore(MissionParams params, Time start) : params_(std::move(params)), start_(start) {}

@@ -45,6 +45,30 @@ TEST(MissionScore, IsNotReachedByDrivingOverTheGoal) {
   EXPECT_NEAR(score.figures().error, 10.0, 1e-9);
 }
 
+TEST(MissionScore, IsReachedByDrivingPastIfThatIsAskedFor) {
+  MissionParams params = to_ten();
+  params.standing = false;
+  params.tolerance = 1.0;
+  MissionScore score(params, at(0s));
+  drive(score, at(0s), at(40s), 0.0, 20.0);
+  EXPECT_EQ(score.figures().outcome, MissionOutcome::reached);
+  EXPECT_NEAR(score.figures().time, 18.0, 0.051);
+}
+
+TEST(MissionScore, AContactEndsItOnlyIfThatIsAskedFor) {
+  for (const bool ends : {false, true}) {
+    MissionParams params = to_ten();
+    params.contact_ends = ends;
+    MissionScore score(params, at(0s));
+    drive(score, at(0s), at(2s), 0.0, 1.0);
+    score.contact(1);
+    score.tick(at(2050ms));
+    EXPECT_EQ(score.figures().outcome, ends ? MissionOutcome::touched : MissionOutcome::running);
+    EXPECT_EQ(score.ended(), ends);
+    EXPECT_EQ(score.figures().contacts, 1u);
+  }
+}
+
 TEST(MissionScore, IsNotReachedByTurningAtTheGoal) {
   MissionScore score(to_ten(), at(0s));
   for (Time now = at(0s); now < at(5s); now += 50ms) score.truth(now, {10.0, 0.0, 0.0}, {0.0, 0.5});
