@@ -12,6 +12,10 @@ namespace kervan::control {
 struct RouteFollowerParams {
   double pass_within = 0.5;     ///< m; an intermediate waypoint counts as passed within this distance
   double arrive_within = 0.03;  ///< m; the last waypoint counts as reached within this distance
+  /// m along the route, how far ahead of the robot the point is that it is to drive to; 0: it is the next waypoint.
+  double look_ahead = 0.0;
+  /// m; the point is so near that the straight line to it leaves the route by no more than this.
+  double cut_corners = 0.1;
 };
 
 /// Keeps its place on a route: a waypoint once passed is not asked for again, and a route once finished stays finished
@@ -32,8 +36,9 @@ class RouteFollower {
   /// position that is not finite changes nothing.
   void join(const geometry::Vector2& position);
 
-  /// Passes every waypoint that counts from `position`, several if they lie close together. True if the current
-  /// waypoint changed or the route was finished. A position that is not finite passes nothing.
+  /// Passes every waypoint that counts from `position`, several if they lie close together; with a look-ahead, those
+  /// that lie behind the place on the route that is nearest to it. True if where to drive changed or the route was
+  /// finished. A position that is not finite passes nothing.
   bool advance(const geometry::Vector2& position);
 
   /// Where to drive now; none before the first route and after an empty one. A finished route keeps its last waypoint.
@@ -45,10 +50,21 @@ class RouteFollower {
   bool arrived() const { return arrived_; }
 
  private:
+  /// Where a leg passes a position nearest, from its waypoint `from` on.
+  struct Foot {
+    geometry::Vector2 at;
+    double distance;
+  };
+  Foot foot(std::size_t from, const geometry::Vector2& position) const;
+  geometry::Vector2 pass_legs(const geometry::Vector2& position);
+  geometry::Vector2 point_ahead(const geometry::Vector2& position, const geometry::Vector2& on_route) const;
+  bool straight_enough(const geometry::Vector2& from, const geometry::Vector2& to, std::size_t end) const;
+
   RouteFollowerParams params_;
   std::vector<geometry::Vector2> route_;
   std::size_t index_ = 0;
   bool arrived_ = false;
+  std::optional<geometry::Vector2> ahead_;  // with a look-ahead, once a position is known
 };
 
 }  // namespace kervan::control

@@ -31,6 +31,18 @@ struct RouteFollowerComponentParams {
        .max = 10.0,
        .help = "The last waypoint counts as reached within this distance.",
        .live = true});
+    v(follow.look_ahead, "look_ahead",
+      {.unit = "m",
+       .min = 0.0,
+       .max = 10.0,
+       .help = "How far ahead on the route the waypoint lies, from where the robot passes; 0: it is the next one.",
+       .live = true});
+    v(follow.cut_corners, "cut_corners",
+      {.unit = "m",
+       .min = 0.0,
+       .max = 10.0,
+       .help = "With a look-ahead, how far the straight way to the waypoint may leave the route.",
+       .live = true});
   }
 };
 
@@ -71,12 +83,11 @@ class RouteFollowerComponent final : public Component {
   void on_odometry(const nav_msgs::msg::Odometry& odometry, Time now) {
     if (!joined_) return join(odometry, now);
     const std::size_t before = follower_.index();
+    const auto waypoint = follower_.waypoint();
     const bool arrived = follower_.arrived();
     follower_.advance(geometry::position_of(odometry.pose.pose));
-    if (follower_.index() != before) {
-      log().info("waypoint {} of {} passed", follower_.index(), follower_.size());
-      publish_waypoint(now);
-    }
+    if (follower_.index() != before) log().info("waypoint {} of {} passed", follower_.index(), follower_.size());
+    if (follower_.waypoint() != waypoint) publish_waypoint(now);
     if (follower_.arrived() && !arrived) log().info("arrived at the last waypoint, by odometry");
   }
 

@@ -56,5 +56,21 @@ TEST(RouteFollowerComponent, AsksForNothingWithoutARoute) {
   EXPECT_FALSE(harness.latest<PoseStamped>("waypoint"));
 }
 
+TEST(RouteFollowerComponent, LooksAheadAndPublishesOnlyWhatMoves) {
+  Harness harness("control/route_follower", {{"look_ahead", 1.0}});
+  be_at(harness, 0.0, 0.0);
+  harness.feed("route", route({{0, 0}, {4, 0}}));
+  harness.advance(10ms);
+  EXPECT_NEAR(harness.latest<PoseStamped>("waypoint")->pose.position.x, 1.0, 1e-9);
+  be_at(harness, 0.4, 0.1);
+  EXPECT_NEAR(harness.latest<PoseStamped>("waypoint")->pose.position.x, 1.4, 1e-9);
+  harness.take<PoseStamped>("waypoint");
+  be_at(harness, 0.4, 0.1);
+  EXPECT_EQ(harness.take<PoseStamped>("waypoint").size(), 0u);
+  harness.change_parameters({{"look_ahead", 2.0}});
+  be_at(harness, 0.4, 0.1);
+  EXPECT_NEAR(harness.latest<PoseStamped>("waypoint")->pose.position.x, 2.4, 1e-9);
+}
+
 }  // namespace
 }  // namespace kervan::test

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
 
 namespace kervan::control {
 namespace {
@@ -109,6 +112,70 @@ TEST(RouteFollower, PassesNothingFromAPositionThatIsNotFinite) {
   auto follower = on_route({{0, 0}, {4, 0}});
   EXPECT_FALSE(follower.advance({std::numeric_limits<double>::quiet_NaN(), 0}));
   EXPECT_EQ(follower.index(), 0u);
+}
+
+RouteFollower looking_ahead(double look_ahead, double cut_corners, std::vector<Vector2> route) {
+  RouteFollower follower({.look_ahead = look_ahead, .cut_corners = cut_corners});
+  follower.start(std::move(route));
+  return follower;
+}
+
+void expect_near(const std::optional<Vector2>& point, const Vector2& wanted) {
+  ASSERT_TRUE(point);
+  EXPECT_NEAR(point->x(), wanted.x(), 1e-3);
+  EXPECT_NEAR(point->y(), wanted.y(), 1e-3);
+}
+
+TEST(RouteFollower, LooksAheadAlongTheRouteFromWhereItIsNearest) {
+  auto follower = looking_ahead(1.0, 0.1, {{0, 0}, {4, 0}});
+  EXPECT_TRUE(follower.advance({0.5, 0.05}));
+  expect_near(follower.waypoint(), {1.5, 0});
+  EXPECT_TRUE(follower.advance({0.6, 0.05}));
+  expect_near(follower.waypoint(), {1.6, 0});
+  EXPECT_FALSE(follower.advance({0.6, 0.05})) << "it stands, and so does the point";
+}
+
+TEST(RouteFollower, LooksPastWaypointsThatLieNearTheLine) {
+  auto follower = looking_ahead(2.0, 0.1, {{0, 0}, {1, 0.05}, {4, 0.05}});
+  follower.advance({0, 0});
+  EXPECT_GT(follower.waypoint()->x(), 1.9);
+}
+
+TEST(RouteFollower, DoesNotLookRoundACorner) {
+  auto follower = looking_ahead(2.0, 0.1, {{0, 0}, {1, 0}, {1, 3}});
+  follower.advance({0, 0});
+  // The line from (0, 0) to (1, y) passes the corner (1, 0) at 0.1 m where y / sqrt(1 + y^2) = 0.1.
+  expect_near(follower.waypoint(), {1.0, 0.1005});
+  follower.advance({0.95, 0.0});
+  EXPECT_GT(follower.waypoint()->y(), 1.5) << "at the corner it sees along the other leg";
+}
+
+TEST(RouteFollower, LooksNoFartherThanTheEnd) {
+  auto follower = looking_ahead(1.0, 0.1, {{0, 0}, {4, 0}});
+  follower.advance({3.5, 0});
+  expect_near(follower.waypoint(), {4, 0});
+  EXPECT_FALSE(follower.arrived());
+  EXPECT_TRUE(follower.advance({3.98, 0}));
+  EXPECT_TRUE(follower.arrived());
+}
+
+TEST(RouteFollower, LookingAheadItStaysOnItsPartOfTheRoute) {
+  // There and back again, 0.3 m apart.
+  auto follower = looking_ahead(1.0, 0.1, {{0, 0}, {5, 0}, {5, 0.3}, {0, 0.3}});
+  follower.advance({1.0, 0.2});
+  expect_near(follower.waypoint(), {2.0, 0});
+  EXPECT_EQ(follower.index(), 1u);
+}
+
+TEST(RouteFollower, LookingAheadItNeverGoesBack) {
+  auto follower = looking_ahead(1.0, 0.1, {{0, 0}, {2, 0}, {2, 2}});
+  follower.advance({2.0, 1.0});
+  EXPECT_EQ(follower.index(), 1u) << "beyond what it looks at";
+  follower.advance({1.8, 0.0});
+  follower.advance({2.0, 0.5});
+  EXPECT_EQ(follower.index(), 2u);
+  follower.advance({1.0, 0.0});
+  EXPECT_EQ(follower.index(), 2u);
 }
 
 }  // namespace
