@@ -1,0 +1,130 @@
+#include <string>
+
+#include "components/control/controller_shell.hpp"
+#include "components/control/dwa.hpp"
+#include "components/control/seen_points.hpp"
+
+namespace kervan::control {
+namespace {
+
+using namespace std::chrono_literals;
+using sensor_msgs::msg::LaserScan;
+
+struct DwaComponentParams {
+  Duration period = 50ms;
+  DwaParams window;
+  SeenPointsParams seen;
+  geometry::Pose2 mount;
+  double arrive_within = 0.2;
+
+  template <class Visitor>
+  void describe(Visitor& v) {
+    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
+    v(window.hull.front, "front",
+      {.unit = "m", .min = 0.01, .max = 10.0, .help = "From base_link to the robot's front."});
+    v(window.hull.rear, "rear", {.unit = "m", .min = 0.0, .max = 10.0, .help = "From base_link to its rear."});
+    v(window.hull.half_width, "half_width", {.unit = "m", .min = 0.01, .max = 10.0, .help = "Half of its width."});
+    v(window.v_max, "v_max", {.unit = "m/s", .min = 0.01, .max = 5.0, .help = "Highest speed forward.", .live = true});
+    v(window.v_back, "v_back",
+      {.unit = "m/s", .min = 0.0, .max = 2.0, .help = "Highest speed backward; 0: it never backs.", .live = true});
+    v(window.turn_rate, "turn_rate",
+      {.unit = "rad/s", .min = 0.01, .max = 10.0, .help = "Highest turning rate.", .live = true});
+    v(window.acceleration, "acceleration",
+      {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "With which the drive speeds up.", .live = true});
+    v(window.deceleration, "deceleration",
+      {.unit = "m/s2", .min = 0.01, .max = 20.0, .help = "With which it can be relied on to brake.", .live = true});
+    v(window.turn_acceleration, "turn_acceleration",
+      {.unit = "rad/s2", .min = 0.01, .max = 100.0, .help = "With which it changes its turning rate.", .live = true});
+    v(window.delay, "delay",
+      {.unit = "s",
+       .min = 0.0,
+       .max = 1.0,
+       .help = "From a measurement until the drive follows the command that was made of it.",
+       .live = true});
+    v(window.window, "window",
+      {.unit = "s",
+       .min = 0.01,
+       .max = 5.0,
+       .help = "Speeds that are reached within it are thought of.",
+       .live = true});
+    v(window.horizon, "horizon",
+      {.unit = "s", .min = 0.2, .max = 5.0, .help = "How far each of them is driven in thought.", .live = true});
+    v(window.margin, "margin",
+      {.unit = "m", .min = 0.0, .max = 1.0, .help = "What must stay free around the robot.", .live = true});
+    v(window.comfort, "comfort",
+      {.unit = "m", .min = 0.0, .max = 1.0, .help = "More room than this is worth nothing.", .live = true});
+    v(window.near_cost, "near_cost",
+      {.unit = "s", .min = 0.0, .max = 100.0, .help = "Of a metre along an obstacle, at the margin.", .live = true});
+    v(window.near_speed, "near_speed",
+      {.unit = "m/s", .min = 0.01, .max = 5.0, .help = "That is no haste at the margin.", .live = true});
+    v(window.haste_cost, "haste_cost",
+      {.unit = "s", .min = 0.0, .max = 100.0, .help = "Of a metre at twice the speed that is no haste.", .live = true});
+    v(window.detour_cost, "detour_cost",
+      {.unit = "s",
+       .min = 0.0,
+       .max = 100.0,
+       .help = "Of a motion at whose end the straight way to the waypoint is blocked.",
+       .live = true});
+    v(window.turn_cost, "turn_cost",
+      {.unit = "s",
+       .min = 0.0,
+       .max = 100.0,
+       .help = "Of each radian from the heading to the waypoint.",
+       .live = true});
+    v(window.change_cost, "change_cost",
+      {.unit = "s", .min = 0.0, .max = 100.0, .help = "Of a command as different as can be.", .live = true});
+    v(seen.reach, "reach",
+      {.unit = "m", .min = 0.5, .max = 5.0, .help = "Obstacles farther from the laser are not looked at."});
+    v(seen.spacing, "spacing", {.unit = "m", .min = 0.02, .max = 0.2, .help = "Of obstacle points."});
+    v(seen.memory, "memory",
+      {.min = 0.0, .max = 600.0, .help = "How long obstacles are remembered where the laser cannot look."});
+    v(arrive_within, "arrive_within",
+      {.unit = "m",
+       .min = 0.001,
+       .max = 2.0,
+       .help = "Stands still this near to its waypoint until the next comes.",
+       .live = true});
+  }
+
+  DwaParams of_window() const {
+    DwaParams params = window;
+    params.period = seconds(period);
+    return params;
+  }
+};
+
+/// Drives a robot by the dynamic window approach (dwa.hpp), past what its laser sees and has seen.
+class DwaComponent final : public ControllerShell<DwaComponentParams, LaserScan> {
+  DynamicWindow window_{params_.of_window()};
+  SeenPoints seen_{params_.seen};
+
+  void on_parameters_changed() override { window_.set_params(params_.of_window()); }
+
+  void on_stand() override { window_.reset(); }
+
+  std::string hear(const LaserScan& message, const geometry::Pose2& robot) override {
+    const geometry::Scan scan = geometry::scan_of(message);
+    if (!geometry::possible(scan)) return "its angles or limits are none";
+    const geometry::Pose2 laser = robot * params_.mount;
+    if (!laser.position().allFinite() || !std::isfinite(laser.yaw)) return "measured from nowhere";
+    seen_.look(laser, scan, geometry::time_of(message.header.stamp));
+    return {};
+  }
+
+  Controlled control(Time, const RobotState& robot, const geometry::Vector2& target) override {
+    const DwaStep step = window_.step(robot, target, seen_.points());
+    switch (step.outcome) {
+      case Outcome::drives: return {step.twist};
+      case Outcome::hindered: return {step.twist, step.outcome, "scan: " + std::string(step.why)};
+      case Outcome::fault: break;
+    }
+    return {{}, step.outcome, "odom: " + std::string(step.why)};
+  }
+};
+
+}  // namespace
+}  // namespace kervan::control
+
+KERVAN_COMPONENT(kervan::control::DwaComponent, "control/dwa",
+                 "Drives to a waypoint past what its laser sees, by the dynamic window approach.")
