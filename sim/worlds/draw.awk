@@ -1,6 +1,6 @@
 # Draws the worlds of this folder that are too long to be written by hand:
 #
-#   awk -f draw.awk -v world=office > office.yaml        # rods, rescue_1 … rescue_4 or office
+#   awk -f draw.awk -v world=office > office.yaml        # rods, clutter, rescue_1 … rescue_4 or office
 #
 # Lengths are metres, angles degrees. Any awk gives the same bytes.
 
@@ -83,6 +83,45 @@ function rods(    count, tries, x, y, i, free, xs, ys) {
     ys[count++] = y
     disc(x, y, 0.05)
   }
+}
+
+# An alley with heaps of one to four cylinders on a grid of 0.15 m.
+function clutter(    count, heap, heaps, most, tries, i, x, y, dx, dy, d, free, xs, ys, of) {
+  say("An alley with clutter in it, in the manner of BARN (its paper: Perille et al. 2020), whose worlds are not among these:")
+  say("barn.awk makes a world out of BARN's tables. This one is ours: heaps of cylinders with a radius of 0.075 m on a grid of")
+  say("0.15 m, with at least 0.80 m between two heaps. The robot drives out of the alley at its upper end.")
+  say("")
+  say("start of a jackal: [-2.25 m, 3.00 m, 90 deg]  the goal is (-2.25, 13)")
+  say("start of a p3dx: [-2.25 m, 3.00 m, 90 deg]  the same goal")
+  segment(-4.5, 0, 0, 0)
+  segment(-4.5, 0, -4.5, 9.6)
+  segment(0, 0, 0, 9.6)
+  count = heaps = 0
+  state = 2020
+  for (tries = 0; tries < 4000 && heaps < 24; ++tries) {
+    x = -4.425 + 0.15 * int(30 * uniform())
+    y = 5.025 + 0.15 * int(30 * uniform())
+    most = 1 + int(4 * uniform())
+    ++heaps
+    heap = 0
+    for (; heap < most; ++heap) {
+      free = x > -4.43 && x < -0.07 && y > 5 && y < 9.5
+      # At a wall, or with room for a robot to pass.
+      if (x > -4.35 && x < -3.62 || x < -0.15 && x > -0.88) free = 0
+      for (i = 0; i < count; ++i) {
+        d = sqrt((x - xs[i]) ^ 2 + (y - ys[i]) ^ 2)
+        if (d < (of[i] == heaps ? 0.1 : 0.95)) free = 0
+      }
+      if (!free) break
+      xs[count] = x
+      ys[count] = y
+      of[count++] = heaps
+      if (uniform() < 0.5) x += uniform() < 0.5 ? 0.15 : -0.15
+      else y += uniform() < 0.5 ? 0.15 : -0.15
+    }
+    if (heap == 0) --heaps
+  }
+  for (i = 0; i < count; ++i) circles = circles sprintf("  - {center: [%.3f m, %.3f m], radius: 0.075 m}\n", xs[i], ys[i])
 }
 
 function rescue_comment(what) {
@@ -232,13 +271,14 @@ function say(line) { comment = comment (line == "" ? "#" : "# " line) "\n" }
 
 BEGIN {
   if (world == "rods") rods()
+  else if (world == "clutter") clutter()
   else if (world == "rescue_1") rescue_1()
   else if (world == "rescue_2") rescue_2()
   else if (world == "rescue_3") rescue_3()
   else if (world == "rescue_4") rescue_4()
   else if (world == "office") office()
   else {
-    print "draw.awk: -v world= takes rods, rescue_1 … rescue_4 or office" > "/dev/stderr"
+    print "draw.awk: -v world= takes rods, clutter, rescue_1 … rescue_4 or office" > "/dev/stderr"
     exit 2
   }
   printf "%s# Drawn by draw.awk: change that, not this. Frame map, x to the right, y up.\n", comment
