@@ -1,8 +1,3 @@
-#include <spdlog/spdlog.h>
-
-#include <algorithm>
-#include <cstdio>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -78,18 +73,11 @@ class BarnScoreComponent final : public Component {
   }
 
   void on_shutdown(Time) override {
-    char figures[200];
-    std::snprintf(figures, sizeof figures,
-                  "{\"outcome\": \"%s\", \"time_s\": %.2f, \"path_m\": %.3f, \"reference_m\": %.4f, \"metric\": %.4f}",
-                  std::string(to_text(score_.outcome())).c_str(), score_.time(), score_.length(),
-                  params_.score.reference, score_.metric());
-    log().info("BARN: {}", figures);
-    if (run_folder().empty()) return;
-    std::string stem = name();
-    std::replace(stem.begin(), stem.end(), '/', '-');
-    std::ofstream file(run_folder() / ("figures-" + stem + ".json"));
-    file << figures << '\n';
-    if (!file.flush()) log().error("figures-{}.json could not be written in {}", stem, run_folder().string());
+    write_figures({{"outcome", std::string(to_text(score_.outcome()))},
+                   {"time_s", score_.time()},
+                   {"path_m", score_.length()},
+                   {"reference_m", params_.score.reference},
+                   {"metric", score_.metric()}});
   }
 };
 

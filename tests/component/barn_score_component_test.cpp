@@ -47,8 +47,7 @@ TEST_F(BarnScoreComponent, LeavesItsFiguresInTheRunsFolder) {
   for (int i = 0; i <= 10; ++i) be_at(harness, 3.0 + i);
   harness.end();
   EXPECT_EQ(figures(),
-            "{\"outcome\": \"success\", \"time_s\": 8.00, \"path_m\": 9.000, \"reference_m\": 10.0000, \"metric\": "
-            "0.5000}\n");
+            "{\"metric\": 0.5, \"outcome\": \"success\", \"path_m\": 9, \"reference_m\": 10, \"time_s\": 8}\n");
 }
 
 TEST_F(BarnScoreComponent, AContactIsACollision) {

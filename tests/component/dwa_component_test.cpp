@@ -77,7 +77,7 @@ TEST(DwaComponent, RemembersWhatIsBehindIt) {
     drive->feed(wall_ahead(0.305));
     // It has turned its back to the wall, in narrow surroundings, and the waypoint is beyond it.
     const geometry::Pose2 turned{0.0, 0.0, std::numbers::pi};
-    for (int i = 0; i < 3; ++i) drive->feed(wall_ahead(0.27), turned);
+    for (int i = 0; i < 3; ++i) drive->feed(wall_ahead(0.305), turned);
   }
   EXPECT_LT(forgets.command().linear.x, -0.1) << "back through the wall";
   EXPECT_GT(remembers.command().linear.x, -0.05);

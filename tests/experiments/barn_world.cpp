@@ -5,7 +5,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <stdexcept>
+
+#include "sim/files/world_file.hpp"
 
 namespace kervan::test {
 namespace {
@@ -50,6 +53,16 @@ double number_of(const std::string& text) {
 }
 
 }  // namespace
+
+BarnWorld clutter_world() {
+  const sim::World world = sim::load_world(KERVAN_SOURCES "/sim/worlds/clutter.yaml");
+  return {.number = -1,
+          .cylinders = {world.circles().begin(), world.circles().end()},
+          .walls = {world.segments().begin(), world.segments().end()},
+          .start = {-2.25, 3.0, std::numbers::pi / 2.0},
+          .goal = {-2.25, 13.0},
+          .optimal = 10.3};
+}
 
 std::string barn_folder() {
   const char* data = std::getenv("KERVAN_TEST_DATA");

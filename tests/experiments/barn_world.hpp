@@ -13,11 +13,15 @@ namespace kervan::test {
 struct BarnWorld {
   int number = 0;
   std::vector<sim::Circle> cylinders;
+  std::vector<sim::Segment> walls;  ///< BARN has none
   geometry::Pose2 start;
   geometry::Vector2 goal;
-  double optimal = 0.0;             ///< m, length of the reference path
-  std::optional<double> published;  ///< success rate of the published DWA baseline, if it has run here
+  double optimal = 0.0;                  ///< m, length of the reference path
+  std::optional<double> published = {};  ///< success rate of the published DWA baseline, if it has run here
 };
+
+/// The world of 24_barn.yaml, in the manner of BARN, number -1.
+BarnWorld clutter_world();
 
 /// The folder of the tables: barn/ in what KERVAN_TEST_DATA names, else in ../shared/data beside the project.
 std::string barn_folder();
