@@ -1,17 +1,25 @@
 #include <string>
+#include <vector>
 
 #include "components/control/controller_shell.hpp"
 #include "components/control/dwa.hpp"
 #include "components/control/seen_points.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
+#include "sensor_msgs/msg/LaserScan.hpp"
 
 namespace kervan::control {
 namespace {
 
 using namespace std::chrono_literals;
+using geometry::Vector2;
+using kervan_msgs::msg::SonarArray;
 using sensor_msgs::msg::LaserScan;
+
+enum class Sensor { scan, sonar };
 
 struct DwaComponentParams {
   Duration period = 50ms;
+  Sensor sensor = Sensor::scan;
   DwaParams window;
   SeenPointsParams seen;
   geometry::Pose2 mount;
@@ -20,6 +28,7 @@ struct DwaComponentParams {
   template <class Visitor>
   void describe(Visitor& v) {
     v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    v(sensor, "sensor", {.choices = {"scan", "sonar"}, .help = "Which of the inputs says where obstacles are."});
     v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
     v(window.hull.front, "front",
       {.unit = "m", .min = 0.01, .max = 10.0, .help = "From base_link to the robot's front."});
@@ -94,32 +103,61 @@ struct DwaComponentParams {
   }
 };
 
-/// Drives a robot by the dynamic window approach (dwa.hpp), past what its laser sees and has seen.
-class DwaComponent final : public ControllerShell<DwaComponentParams, LaserScan> {
+/// Drives a robot by the dynamic window approach (dwa.hpp), past what its laser or its sonars see and have seen.
+class DwaComponent final : public ControllerShell<DwaComponentParams> {
+  Input<LaserScan> scan_{this, "scan", qos::sensor.max_age(oldest).optional(), &DwaComponent::on_scan,
+                         "What the laser measures."};
+  Input<SonarArray> sonar_{this, "sonar", qos::sensor.max_age(oldest).optional(), &DwaComponent::on_sonar,
+                           "What the sonars hear."};
   DynamicWindow window_{params_.of_window()};
   SeenPoints seen_{params_.seen};
+  std::vector<Vector2> echoes_;  // of the last round, in the frame of the odometry
+  std::string useless_;          // why the last message of the sensor told nothing
 
   void on_parameters_changed() override { window_.set_params(params_.of_window()); }
 
   void on_stand() override { window_.reset(); }
 
-  std::string hear(const LaserScan& message, const geometry::Pose2& robot) override {
-    const geometry::Scan scan = geometry::scan_of(message);
-    if (!geometry::possible(scan)) return "its angles or limits are none";
-    const geometry::Pose2 laser = robot * params_.mount;
-    if (!laser.position().allFinite() || !std::isfinite(laser.yaw)) return "measured from nowhere";
-    seen_.look(laser, scan, geometry::time_of(message.header.stamp));
-    return {};
+  std::string missing() override { return params_.sensor == Sensor::scan ? scan_.missing() : sonar_.missing(); }
+
+  std::string unready() override { return useless_.empty() ? "" : sensor() + ": " + useless_; }
+
+  std::string sensor() const { return params_.sensor == Sensor::scan ? scan_.name() : sonar_.name(); }
+
+  /// The place of a sensor at `mount`, if it can be told.
+  std::optional<geometry::Pose2> placed(const geometry::Pose2& mount) const {
+    if (!odometry()) return std::nullopt;
+    const geometry::Pose2 pose = geometry::pose_of(odometry()->pose.pose) * mount;
+    if (!pose.position().allFinite() || !std::isfinite(pose.yaw)) return std::nullopt;
+    return pose;
   }
 
-  Controlled control(Time, const RobotState& robot, const geometry::Vector2& target) override {
-    const DwaStep step = window_.step(robot, target, seen_.points());
-    switch (step.outcome) {
-      case Outcome::drives: return {step.twist};
-      case Outcome::hindered: return {step.twist, step.outcome, "scan: " + std::string(step.why)};
-      case Outcome::fault: break;
+  void on_scan(const LaserScan& message, Time) {
+    if (params_.sensor != Sensor::scan) return;
+    const geometry::Scan scan = geometry::scan_of(message);
+    const auto laser = placed(params_.mount);
+    useless_ = !geometry::possible(scan) ? "its angles or limits are none" : !laser ? "measured from nowhere" : "";
+    if (useless_.empty()) seen_.look(*laser, scan, geometry::time_of(message.header.stamp));
+  }
+
+  /// An echo is taken to come from the middle of its arc.
+  void on_sonar(const SonarArray& round, Time) {
+    if (params_.sensor != Sensor::sonar) return;
+    const auto robot = placed({});
+    useless_ = !(round.max_range > round.min_range) ? "its ranges are none" : !robot ? "heard from nowhere" : "";
+    if (!useless_.empty()) return;
+    echoes_.clear();
+    for (const auto& reading : round.readings) {
+      if (!(reading.range >= 0.0F && reading.range <= round.max_range)) continue;
+      const Vector2 echo = Vector2(static_cast<double>(reading.x), static_cast<double>(reading.y)) +
+                           static_cast<double>(reading.range) * geometry::heading(static_cast<double>(reading.yaw));
+      if (echo.allFinite()) echoes_.push_back(*robot * echo);
     }
-    return {{}, step.outcome, "odom: " + std::string(step.why)};
+    seen_.add(echoes_, robot->position(), geometry::time_of(round.header.stamp));
+  }
+
+  Controlled control(Time, const RobotState& robot, const Vector2& target) override {
+    return {window_.step(robot, target, seen_.points()), "odom"};
   }
 };
 
@@ -127,4 +165,4 @@ class DwaComponent final : public ControllerShell<DwaComponentParams, LaserScan>
 }  // namespace kervan::control
 
 KERVAN_COMPONENT(kervan::control::DwaComponent, "control/dwa",
-                 "Drives to a waypoint past what its laser sees, by the dynamic window approach.")
+                 "Drives to a waypoint past what its laser or its sonars see, by the dynamic window approach.")

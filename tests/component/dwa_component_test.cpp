@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "framework/test/harness.hpp"
+#include "kervan_msgs/msg/SonarArray.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
 #include "tests/component/plane_fixtures.hpp"
 
@@ -67,7 +68,7 @@ TEST(DwaComponent, SaysThatItIsHinderedWhenItCannotBrakeInTime) {
   drive.feed(wall_ahead(0.40), {}, {1.2, 0.0});
   EXPECT_EQ(drive.command().linear.x, 0.0);
   EXPECT_EQ(drive.harness.state(), ComponentState::degraded);
-  EXPECT_EQ(drive.harness.reason(), "scan: no motion leaves room to brake");
+  EXPECT_EQ(drive.harness.reason(), "no motion leaves room to brake");
 }
 
 TEST(DwaComponent, RemembersWhatIsBehindIt) {
@@ -124,6 +125,50 @@ TEST(DwaComponent, LeavesOutRangesThatAreNoDistance) {
   scan.ranges[136] = -infinity;
   drive.feed(scan);
   EXPECT_GT(drive.command().linear.x, 0.5);
+}
+
+/// One sonar 0.2 m ahead of the middle of the robot, that looks ahead.
+kervan_msgs::msg::SonarArray sonar_of(float range) {
+  kervan_msgs::msg::SonarArray sonar;
+  sonar.field_of_view = 0.5F;
+  sonar.min_range = 0.15F;
+  sonar.max_range = 5.0F;
+  sonar.readings.resize(1);
+  sonar.readings[0].x = 0.2F;
+  sonar.readings[0].range = range;
+  return sonar;
+}
+
+TEST(DwaComponent, DrivesBySonarsIfThatIsItsSensor) {
+  DwaDrive drive(ValueMap{{"sensor", "sonar"}, {"memory", 1.0}});
+  drive.feed(wall_ahead(0.40));
+  EXPECT_EQ(drive.harness.reason(), "sonar: nothing received yet") << "the laser is not its sensor";
+  const auto hear = [&](float range, double speed) {
+    auto sonar = sonar_of(range);
+    geometry::set_header(sonar.header, drive.harness.now(), "base_link");
+    drive.harness.feed("odom", odometry_at({}, {speed, 0.0}));
+    drive.harness.feed("sonar", sonar);
+    drive.harness.advance(50ms);
+  };
+  hear(infinity, 0.5);
+  EXPECT_GT(drive.command().linear.x, 0.5);
+  hear(0.20F, 1.2);
+  EXPECT_EQ(drive.harness.reason(), "no motion leaves room to brake");
+  hear(infinity, 1.2);
+  EXPECT_EQ(drive.harness.reason(), "no motion leaves room to brake") << "no echo does not say that it was wrong";
+  for (int i = 0; i < 25; ++i) hear(std::numeric_limits<float>::quiet_NaN(), 0.5);
+  EXPECT_GT(drive.command().linear.x, 0.5) << "forgotten";
+}
+
+TEST(DwaComponent, RefusesSonarsWithoutARange) {
+  DwaDrive drive(ValueMap{{"sensor", "sonar"}});
+  auto sonar = sonar_of(infinity);
+  sonar.max_range = sonar.min_range;
+  drive.harness.feed("odom", odometry_at({}));
+  drive.harness.feed("sonar", sonar);
+  drive.harness.advance(50ms);
+  EXPECT_EQ(drive.harness.reason(), "sonar: its ranges are none");
+  EXPECT_EQ(drive.command().linear.x, 0.0);
 }
 
 TEST(DwaComponent, StandsWithInputsThatAreNotFinite) {

@@ -187,7 +187,7 @@ TEST_F(Program, RefusesToDrawWhatIsNoWorld) {
                  "boxes, bitmaps, maps, low, moving");
   const Result misspelt = kervan("draw ofice");
   EXPECT_EQ(misspelt.code, 2);
-  EXPECT_TRUE(misspelt.output.starts_with("there is no world 'ofice'; did you mean 'office'? there are: corner_180, "))
+  EXPECT_TRUE(misspelt.output.starts_with("there is no world 'ofice'; did you mean 'office'? there are: clutter, "))
       << misspelt.output;
 }
 
