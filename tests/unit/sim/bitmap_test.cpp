@@ -217,7 +217,7 @@ TEST_P(RandomBitmap, EverySetOfInstructionsGivesTheSameBits) {
   const CellMap cells(map_);
   for (const Instructions instructions : {Instructions::avx2, Instructions::avx512}) {
     if (!available(instructions)) continue;
-    for (const std::size_t count : {1, 7, 8, 15, 16, 17, 181}) {
+    for (const std::size_t count : {1, 7, 8, 15, 16, 17, 181, 600}) {
       std::vector<Vector2> directions;
       for (std::size_t i = 0; i < count; ++i)
         directions.push_back(geometry::heading(i % 5 == 0 ? 0.5 * pi * static_cast<double>(i % 4) : number(-pi, pi)));

@@ -135,7 +135,7 @@ TEST(Threads, TheCrowdOfTheseTestsDoesMeet) {
 TEST(Threads, LongRobotsThatTurnOnTheSpotDoNotTurnIntoEachOther) {
   const auto nothing = std::make_shared<const World>(Obstacles{});
   const Outline bar({{0.6, -0.1}, {0.6, 0.1}, {-0.6, 0.1}, {-0.6, -0.1}});
-  for (const auto& [a, b, distance] : {std::array{1.22, 0.66, 0.966}, {0.75, 1.27, 1.046}, {1.02, 4.05, 0.908}}) {
+  for (const auto& [a, b, distance] : {std::array{0.70, 1.59, 1.136}, {3.85, 4.69, 1.14}, {1.14, 0.88, 1.183}}) {
     // Those who were all but touched once heed nobody who stays farther away than a millimetre.
     std::vector<RobotSetup> setups{perfect("a", {0.0, 0.0, a}), perfect("b", {5.0, 0.0, 0.0}),
                                    perfect("c", Pose2{0.0, 0.0, a} * Pose2{0.9001, 0.0, 0.0}),
@@ -152,6 +152,41 @@ TEST(Threads, LongRobotsThatTurnOnTheSpotDoNotTurnIntoEachOther) {
     other.add("b", bar, simulation.robots()[1].pose());
     EXPECT_GT(clearance(other, 0, bar, simulation.robots()[0].pose()).distance, 0.0) << distance << " m apart";
     EXPECT_EQ(simulation.robots()[1].body().contacts(), 1u) << distance << " m apart";
+  }
+}
+
+TEST(Threads, LongRobotsThatPassEachOtherCloselyHeedEachOther) {
+  // Side by side, five centimetres apart. The first goes two centimetres ahead, and the line through their centres
+  // turns so far that along it they overlap. Then the second moves in small parts, which are rounded one by one.
+  const auto nothing = std::make_shared<const World>(Obstacles{});
+  const Outline bar({{0.6, -0.1}, {0.6, 0.1}, {-0.6, 0.1}, {-0.6, -0.1}});
+  const Pose2 first{0.3, 0.2, 0.7}, second = first * Pose2{0.0, 0.25, 0.0};
+  // As above, they are all but touched once, so that they heed nobody farther away than a millimetre.
+  std::vector<RobotSetup> setups{perfect("a", {10.0, 0.0, 0.0}), perfect("b", {20.0, 0.0, 0.0}),
+                                 perfect("c", {10.9001, 0.0, 0.0}), perfect("d", {20.9001, 0.0, 0.0})};
+  for (RobotSetup& setup : setups) setup.model.drive.acceleration = setup.model.drive.angular_acceleration = 100.0;
+  for (std::size_t i : {0u, 1u}) setups[i].model.outline = bar;
+  Simulation simulation(nothing, setups, 1);
+  simulation.teleport("a", first);
+  simulation.teleport("b", second);
+  std::vector<Robot> robots{simulation.robots().begin(), simulation.robots().begin() + 2};
+  simulation.command(0, {1.0, 0.0});
+  simulation.command(1, {0.7, 0.3});
+  simulation.step(20ms);
+
+  Bodies bodies;
+  for (const Robot& robot : robots) bodies.add(robot.name(), bar, robot.pose());
+  robots[0].command({1.0, 0.0}, 0ms);
+  robots[1].command({0.7, 0.3}, 0ms);
+  for (std::size_t i : {0u, 1u}) {
+    robots[i].plan(0ms, 20ms);
+    robots[i].drive(Surroundings(*nothing, bodies, i));
+    bodies.move(i, robots[i].pose());
+  }
+  for (std::size_t i : {0u, 1u}) {
+    EXPECT_EQ(simulation.robots()[i].pose().x, robots[i].pose().x);
+    EXPECT_EQ(simulation.robots()[i].pose().y, robots[i].pose().y);
+    EXPECT_EQ(simulation.robots()[i].pose().yaw, robots[i].pose().yaw);
   }
 }
 
