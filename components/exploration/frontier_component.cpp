@@ -12,6 +12,7 @@
 #include "framework/geometry/messages.hpp"
 #include "framework/kervan.hpp"
 #include "geometry_msgs/msg/PoseStamped.hpp"
+#include "kervan_msgs/msg/Contact.hpp"
 #include "kervan_msgs/msg/FrontierClaim.hpp"
 #include "kervan_msgs/msg/GoalStatus.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
@@ -33,6 +34,7 @@ struct FrontierParams {
   double seen_within = 1.0;
   Duration patience = 60s;
   Duration period = 500ms;
+  double enough = 0.0;
   bool end_run = false;
 
   template <class Visitor>
@@ -67,6 +69,11 @@ struct FrontierParams {
        .help = "A frontier with nothing unknown so near to it is not driven to any more."});
     v(patience, "patience", {.min = 1.0, .max = 3600.0, .help = "A frontier not reached by then is put aside."});
     v(period, "period", {.min = 0.05, .max = 60.0, .help = "Time between two looks at the map."});
+    v(enough, "enough",
+      {.unit = "m2",
+       .min = 0.0,
+       .max = 1e9,
+       .help = "Done when so much is known to be free; 0: when there is no frontier any more."});
     v(end_run, "end_run", {.help = "Ends the run when everybody is done."});
   }
 
@@ -89,6 +96,7 @@ class FrontierComponent final : public Component {
                                               &FrontierComponent::on_status, "What has become of the goal."};
   Input<FrontierClaim> claims_{this, "claims", qos::latched.optional(), &FrontierComponent::on_claim,
                                "What all robots have chosen, this one too."};
+  Input<kervan_msgs::msg::Contact> contact_{this, "contact", qos::event.optional(), "Every touch of the robot."};
   Output<geometry_msgs::msg::PoseStamped> goal_{this, "goal", qos::latched, "Place of the frontier to drive to."};
   Output<FrontierClaim> claim_{this, "claim", qos::latched, "What this robot has chosen."};
   Timer tick_{this, params_.period, &FrontierComponent::on_tick};
@@ -97,7 +105,7 @@ class FrontierComponent final : public Component {
   Time chosen_at_{};
   std::string goal_id_;
   bool failed_ = false;  ///< so says the planner of the present goal
-  std::uint64_t chosen_ = 0, put_aside_ = 0, refused_ = 0;
+  std::uint64_t chosen_ = 0, put_aside_ = 0, yielded_ = 0, contacts_ = 0, refused_ = 0;
   std::optional<Time> done_at_;
   std::vector<std::pair<double, double>> coverage_;  ///< s, m2
   double path_ = 0.0;
@@ -123,12 +131,14 @@ class FrontierComponent final : public Component {
     if ((Vector2(claim.x, claim.y) - *place_).norm() >= params_.choice.separation) return;
     const Time theirs = geometry::time_of(claim.header.stamp);
     if (theirs < chosen_at_ || (theirs == chosen_at_ && claim.robot < name())) {
+      ++yielded_;
       place_.reset();
       choose(now);
     }
   }
 
   void on_tick(Time now) {
+    contacts_ += contact_.take().size();
     if (const auto* odometry = odom_.latest()) {
       const Vector2 here = geometry::position_of(odometry->pose.pose);
       if (last_ && here.allFinite()) path_ += (here - *last_).norm();
@@ -149,8 +159,8 @@ class FrontierComponent final : public Component {
     const auto& frontiers = map_.find(here);
     if (place_) {
       const bool arrived = (*place_ - here).norm() <= params_.arrive_within;
-      if (!map_.open_near(*place_, params_.seen_within)) {
-        place_.reset();  // It has been seen, by this robot or another one.
+      if (knows_enough() || !map_.open_near(*place_, params_.seen_within)) {
+        place_.reset();  // It has been seen, by this robot or another one, or need not be.
       } else if (failed_ || arrived || now - chosen_at_ >= params_.patience) {
         log().info("frontier at ({:.2f}, {:.2f}) is put aside: {}", place_->x(), place_->y(),
                    failed_   ? "there is no way to it"
@@ -174,7 +184,7 @@ class FrontierComponent final : public Component {
     for (const auto& claim : claims_.instances())
       if (claim->robot != name() && claim->state == ExplorationState::EXPLORATION_DRIVING)
         taken.emplace_back(claim->x, claim->y);
-    const Choice choice = choice_.choose(now, frontiers, taken);
+    const Choice choice = knows_enough() ? Choice::explored : choice_.choose(now, frontiers, taken);
     const ExplorationState before =
         std::exchange(state_, choice == Choice::chosen    ? ExplorationState::EXPLORATION_DRIVING
                               : choice == Choice::waiting ? ExplorationState::EXPLORATION_WAITING
@@ -193,6 +203,8 @@ class FrontierComponent final : public Component {
     if (choice != Choice::explored) done_at_.reset();
     if (choice == Choice::chosen || state_ != before) publish_claim(now);
   }
+
+  bool knows_enough() const { return params_.enough > 0.0 && map_.free_area() >= params_.enough; }
 
   bool all_done() const {
     for (const auto& claim : claims_.instances())
@@ -221,6 +233,7 @@ class FrontierComponent final : public Component {
   }
 
   void on_shutdown(Time now) override {
+    contacts_ += contact_.take().size();
     if (refused_ > 0) log().warn("left out {} tiles", refused_);
     coverage_.emplace_back(seconds(now - activated_), map_.free_area());
     ValueList coverage;
@@ -235,6 +248,8 @@ class FrontierComponent final : public Component {
                    {"area_m2", map_.free_area()},
                    {"frontiers", static_cast<std::int64_t>(chosen_)},
                    {"put_aside", static_cast<std::int64_t>(put_aside_)},
+                   {"yielded", static_cast<std::int64_t>(yielded_)},
+                   {"contacts", static_cast<std::int64_t>(contacts_)},
                    {"path_m", path_},
                    {"coverage", std::move(coverage)}});
   }

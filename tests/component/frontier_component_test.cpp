@@ -1,6 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
 
 #include "components/grid/cells.hpp"
 #include "framework/test/harness.hpp"
@@ -129,6 +133,89 @@ TEST(FrontierComponent, OfTwoThatChooseTheSameTheEarlierKeepsIt) {
   harness.feed("claims", claim_of("b", 6.1, 3.0, Time{}));
   be_at(harness, 5, 3, 10ms);
   EXPECT_LT((goal(harness) - Vector2(3.0, 6.1)).norm(), 0.2) << "the other was";
+}
+
+TEST(FrontierComponent, IsDoneWhenEnoughIsKnown) {
+  Harness harness("exploration/frontier", {{"enough", 29.0}});
+  see_room(harness);
+  be_at(harness, 5, 3);
+  EXPECT_EQ(harness.latest<FrontierClaim>("claim")->state, ExplorationState::EXPLORATION_DONE);
+  EXPECT_FALSE(harness.latest<PoseStamped>("goal"));
+}
+
+/// One of two robots on an open floor of 19.2 m by 19.2 m, of which each sees the tiles around it and tells both.
+struct Explorer {
+  Harness harness{"exploration/frontier"};
+  const char* name;  ///< as the other one knows it
+  Vector2 at{9.0, 9.0};
+
+  /// What it has chosen, if it drives there.
+  std::optional<Vector2> choice() const {
+    const auto* claim = harness.latest<FrontierClaim>("claim");
+    if (!claim || claim->state != ExplorationState::EXPLORATION_DRIVING) return std::nullopt;
+    return Vector2(claim->x, claim->y);
+  }
+};
+
+MapTile floor_tile(int tx, int ty) {
+  constexpr int tiles = 6;
+  MapTile tile;
+  tile.tile_x = tx;
+  tile.tile_y = ty;
+  tile.resolution = 0.05f;
+  tile.width = tile.height = grid::tile_side;
+  const int last = tiles * grid::tile_side - 1;
+  const grid::CellBox box = grid::cells_of_tile({tx, ty});
+  for (int y = box.y; y < box.y + box.rows; ++y)
+    for (int x = box.x; x < box.x + box.columns; ++x)
+      tile.data.push_back(x == 0 || y == 0 || x == last || y == last ? std::int8_t{100} : std::int8_t{0});
+  return tile;
+}
+
+TEST(FrontierComponent, TwoRobotsNeverDriveToTheSameFrontierUntilAllIsExplored) {
+  constexpr double separation = 2.0, tile_length = 3.2, step = 1.0;  // m
+  std::array<Explorer, 2> robots = {Explorer{.name = "a"}, Explorer{.name = "z"}};
+  std::array<std::array<bool, 6>, 6> seen{};
+  int both_drove = 0, steps = 0;
+  const auto done = [](const Explorer& robot) {
+    const auto* claim = robot.harness.latest<FrontierClaim>("claim");
+    return claim && claim->state == ExplorationState::EXPLORATION_DONE;
+  };
+  while (steps < 200 && !(done(robots[0]) && done(robots[1]))) {
+    ++steps;
+    for (int ty = 0; ty < 6; ++ty)
+      for (int tx = 0; tx < 6; ++tx) {
+        const Vector2 middle((tx + 0.5) * tile_length, (ty + 0.5) * tile_length);
+        bool& known = seen[static_cast<std::size_t>(ty)][static_cast<std::size_t>(tx)];
+        if (known || ((middle - robots[0].at).norm() > 3.0 && (middle - robots[1].at).norm() > 3.0)) continue;
+        known = true;
+        for (Explorer& robot : robots) robot.harness.feed("tiles", floor_tile(tx, ty));
+      }
+    for (Explorer& robot : robots) be_at(robot.harness, robot.at.x(), robot.at.y(), 500ms);
+    // Until nobody has anything to say any more.
+    for (bool said = true; std::exchange(said, false);) {
+      for (std::size_t i = 0; i < 2; ++i)
+        for (const auto& sample : robots[i].harness.take<FrontierClaim>("claim")) {
+          FrontierClaim claim = *sample;
+          claim.robot = robots[i].name;
+          robots[1 - i].harness.feed("claims", claim);
+          said = true;
+        }
+      for (Explorer& robot : robots) robot.harness.advance(10ms);
+    }
+    const auto first = robots[0].choice(), second = robots[1].choice();
+    if (first && second) {
+      ++both_drove;
+      EXPECT_GE((*first - *second).norm(), separation) << "step " << steps;
+    }
+    for (Explorer& robot : robots)
+      if (const auto place = robot.choice()) {
+        const Vector2 way = *place - robot.at;
+        robot.at += std::min(1.0, step / std::max(way.norm(), 1e-9)) * way;
+      }
+  }
+  EXPECT_TRUE(done(robots[0]) && done(robots[1])) << "after " << steps << " steps";
+  EXPECT_GT(both_drove, 5);
 }
 
 TEST(FrontierComponent, EndsTheRunWhenAllAreDoneAndWritesItsFigures) {

@@ -51,6 +51,23 @@ TEST(LaserMapperComponent, MapsFromWhereTheLaserIsMounted) {
   EXPECT_EQ(harness.state(), ComponentState::active);
 }
 
+TEST(LaserMapperComponent, LeavesOtherRobotsOutOfTheMapWhereTheySayThatTheyAre) {
+  Harness harness("mapping/laser", {{"others", ValueList{"r2", "r3"}}});
+  for (int i = 0; i < 11; ++i) {
+    harness.feed("/r2/odom", odometry_at(harness.now(), {2.2, 0.0, 0.0}));
+    see(harness, scan_of(2.0f), 1);
+  }
+  const TileMap map = heard(harness);
+  EXPECT_EQ(map.percent(2.025, 0.025), -1);
+  EXPECT_EQ(map.percent(1.025, 0.025), -1) << "nothing is known of what lies before it either";
+  EXPECT_GT(map.percent(0.025, 2.025), 90);
+  EXPECT_EQ(harness.state(), ComponentState::active) << "nobody knows where r3 is";
+  // r2 is silent: what is there may be anything.
+  harness.advance(1s);
+  see(harness, scan_of(2.0f), 11);
+  EXPECT_GT(heard(harness).percent(2.025, 0.025), 90);
+}
+
 TEST(LaserMapperComponent, LeavesOutWhatIsNoDistanceAndSaysSo) {
   Harness harness("mapping/laser");
   see(harness, scan_of(std::numeric_limits<float>::quiet_NaN()), 11);
