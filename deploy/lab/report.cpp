@@ -25,9 +25,10 @@ void write(const fs::path& file, const std::string& text) {
                       "cannot be written" + (errno != 0 ? std::string(": ") + std::strerror(errno) : ""));
 }
 
-std::string joined(const std::vector<std::string>& labels) {
+/// "floor 1, avoidance pursuit"
+std::string named(const std::vector<std::string>& factors, const Group& group) {
   std::string text;
-  for (const std::string& label : labels) text += (text.empty() ? "" : ", ") + label;
+  for (std::size_t i = 0; i < factors.size(); ++i) text += (i == 0 ? "" : ", ") + factors[i] + ' ' + group.labels[i];
   return text;
 }
 
@@ -38,9 +39,9 @@ BarChart chart_of(const Results& results, std::size_t response) {
   chart.unit = results.experiment.responses[response].unit;
   chart.percent = kind_of(results, response) == ResponseKind::share;
   const auto columns = grouped(results, table.columns);
-  for (const Group& column : columns) chart.series.push_back(joined(column.labels));
+  for (const Group& column : columns) chart.series.push_back(named(table.columns, column));
   for (const Group& row : grouped(results, table.rows)) {
-    Bars bars{row.labels.empty() ? "all" : joined(row.labels), {}};
+    Bars bars{row.labels.empty() ? "all" : named(table.rows, row), {}};
     for (const Group& column : columns)
       bars.bars.push_back(summary_of(results, common(row, column), response).estimate);
     chart.groups.push_back(std::move(bars));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 namespace kervan::lab {
 namespace {
@@ -78,21 +79,35 @@ std::string joined(const std::vector<std::string>& labels) {
 
 void append(Row& row, const std::vector<std::string>& more) { row.insert(row.end(), more.begin(), more.end()); }
 
+/// How many runs each value of the table stands for, if it is the same number for all and not said by the values.
+std::string runs_each(const std::vector<std::vector<Summary>>& rows) {
+  std::set<std::size_t> counts;
+  for (const auto& row : rows)
+    for (const Summary& summary : row)
+      if (summary.kind != ResponseKind::share) counts.insert(summary.n);
+  return counts.size() == 1 && *counts.begin() > 0 ? ", n = " + std::to_string(*counts.begin()) : "";
+}
+
 std::string table_by_columns(const Results& results, const std::string& name) {
   const Table& table = results.experiment.table;
   const std::size_t response = index_of(results, name);
   const auto rows = grouped(results, table.rows), columns = grouped(results, table.columns);
+  std::vector<std::vector<Summary>> summaries;
+  for (const Group& group : rows) {
+    summaries.emplace_back();
+    for (const Group& column : columns)
+      summaries.back().push_back(summary_of(results, common(group, column), response));
+  }
+  const std::string each = runs_each(summaries);
   Row head = table.rows;
   for (const Group& column : columns) head.push_back(joined(column.labels));
-  std::string text = "**" + titled(results.experiment.responses[response]) + "** by " + joined(table.columns) + "\n\n" +
-                     markdown_head(head);
-  for (const Group& group : rows) {
-    Row row = group.labels;
-    for (const Group& column : columns) {
-      const Summary summary = summary_of(results, common(group, column), response);
+  std::string text = "**" + titled(results.experiment.responses[response]) + "** by " + joined(table.columns) + each +
+                     "\n\n" + markdown_head(head);
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    Row row = rows[i].labels;
+    for (const Summary& summary : summaries[i])
       row.push_back(summary_text(summary) +
-                    (summary.kind == ResponseKind::share ? "" : ", n = " + std::to_string(summary.n)));
-    }
+                    (summary.kind == ResponseKind::share || !each.empty() ? "" : ", n = " + std::to_string(summary.n)));
     text += markdown_line(row);
   }
   return text;

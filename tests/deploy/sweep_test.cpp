@@ -97,6 +97,44 @@ TEST_F(Sweep, SetsParametersAsKervanRunDoes) {
   EXPECT_NE(traces.at(1), traces.at(2));
 }
 
+/// The paper's opening finder weighs three angles, of which only the ratios count.
+TEST_F(Sweep, ShowsThatEqualRatiosOfWeightsDriveAlikeToTheLastBit) {
+  write("s.yaml",
+        "kervan_sweep: 1\nname: ratios\ncomposition: 22_vfh_weights\nfor: 30s\n"
+        "matrix:\n  weights: {1 1 1: {a: 1, b: 1, c: 1}, 2 2 2: {a: 2, b: 2, c: 2}, 3 3 3: {a: 3, b: 3, c: 3}, "
+        "3 1 1: {a: 3, b: 1, c: 1}}\n  seed: 1..2\n"
+        "responses: {trace: trace_hash}\n");
+  ASSERT_EQ(kervan({"sweep", "s.yaml"}).code, 0);
+  const auto traces = column(text("sweeps/ratios/runs.csv"), 2);
+  ASSERT_EQ(traces.size(), 9u);
+  for (const std::size_t seed : {1u, 2u}) {
+    EXPECT_EQ(traces[seed], traces[seed + 2]);
+    EXPECT_EQ(traces[seed], traces[seed + 4]);
+    EXPECT_NE(traces[seed], traces[seed + 6]);
+  }
+  EXPECT_NE(traces[1], traces[2]);
+}
+
+TEST_F(Sweep, BeginsWithEveryShippedOne) {
+  for (const auto& entry : fs::directory_iterator(fs::path(KERVAN_SHARE_FOLDER) / "experiments")) {
+    const std::string name = entry.path().stem().string();
+    SCOPED_TRACE(name);
+    Process sweep(command({"sweep", name, "--jobs", "1"}), folder_.path());
+    const fs::path runs = folder_.path() / "sweeps" / name / "runs";
+    const auto one_is_done = [&] {
+      std::error_code none;
+      for (const auto& run : fs::directory_iterator(runs, none))
+        if (fs::exists(run.path() / "cell.json")) return true;
+      return false;
+    };
+    EXPECT_TRUE(eventually(one_is_done));
+    sweep.signal(SIGINT);
+    const Result result = sweep.wait();
+    EXPECT_EQ(result.code, 130) << result.err;
+    EXPECT_EQ(result.err.find("failed"), std::string::npos) << result.err;
+  }
+}
+
 TEST_F(Sweep, GoesOnWhereItWasInterruptedAndComesToTheSameTable) {
   write("s.yaml", lab("{seed: 1..30}"));
   {

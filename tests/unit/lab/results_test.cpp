@@ -66,12 +66,22 @@ TEST(MarkdownTable, HasAColumnForEachResponse) {
 
 TEST(MarkdownTable, HasRowsAgainstColumns) {
   EXPECT_EQ(table_markdown(results("table: {rows: [floor], columns: [arm], responses: [points]}\n")),
-            "**points (1)** by arm\n"
+            "**points (1)** by arm, n = 3\n"
             "\n"
             "| floor | paper | ours |\n"
             "|---|---|---|\n"
-            "| 1 | 11.0 [8.5, 13.5], n = 3 | 21.0 [18.5, 23.5], n = 3 |\n"
-            "| 2 | 21.0 [18.5, 23.5], n = 3 | 41.0 [38.5, 43.5], n = 3 |\n");
+            "| 1 | 11.0 [8.5, 13.5] | 21.0 [18.5, 23.5] |\n"
+            "| 2 | 21.0 [18.5, 23.5] | 41.0 [38.5, 43.5] |\n");
+}
+
+TEST(MarkdownTable, SaysBesideEachValueHowManyRunsItIsOfIfTheyDiffer) {
+  EXPECT_EQ(table_markdown(with_a_failure(results("table: {rows: [floor], columns: [arm], responses: [trace]}\n"))),
+            "**trace** by arm\n"
+            "\n"
+            "| floor | paper | ours |\n"
+            "|---|---|---|\n"
+            "| 1 | aa, n = 2 | 3 different, n = 3 |\n"
+            "| 2 | aa, n = 3 | 3 different, n = 3 |\n");
 }
 
 TEST(CsvTable, HasARowForEachRunAndQuotesWhatNeedsIt) {
