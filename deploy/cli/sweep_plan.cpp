@@ -110,8 +110,8 @@ class Planner {
       return resolved;
     } catch (const ConfigError& error) {
       if (error.location().file == experiment_.file) throw;
-      const std::string run = lab::describe(experiment_, cell);
-      throw ConfigError(experiment_.composition.location, (run.empty() ? "" : "the run " + run + ": ") + error.what());
+      throw ConfigError(experiment_.composition.location,
+                        "the run " + lab::describe(experiment_, cell) + ": " + error.what());
     }
   }
 

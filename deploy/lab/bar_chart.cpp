@@ -14,9 +14,9 @@ using observe::decimal;
 using observe::SvgWriter;
 
 // Pixels of the page.
-constexpr double page_width = 1000.0, margin = 36.0, header = 66.0, label_width = 300.0, text_width = 96.0;
+constexpr double page_width = 1000.0, margin = 36.0, header = 66.0, text_width = 96.0;
 constexpr double bar_height = 15.0, group_gap = 11.0, line_height = 19.0, axis_height = 30.0;
-constexpr double left = margin + label_width, right = page_width - margin - text_width;
+constexpr double right = page_width - margin - text_width;
 
 constexpr std::array<const char*, 10> colours{"#1769aa", "#d1580f", "#2c8a4b", "#8445a8", "#b3881a",
                                               "#0f8b8d", "#c2417c", "#5b6b1e", "#7a4a2b", "#4f5bd5"};
@@ -26,12 +26,21 @@ constexpr const char* fonts = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans
 
 std::string px(double value) { return decimal(value, 1); }
 
-/// The values of the axis: from `low` to `high` in steps of 1, 2 or 5 times a power of ten, 0 among them.
+/// The values of the axis: from `low` to `high` in steps of 1, 2 or 5 times a power of ten, 0 among them. It begins at
+/// `left` (px).
 struct Axis {
+  double left = 0.0;
   double low = 0.0, high = 0.0, step = 1.0;
 
   double at(double value) const { return left + (right - left) * (value - low) / (high - low); }
 };
+
+/// Room for the longest label; nobody knows the font's exact widths.
+double label_width(const BarChart& chart) {
+  std::size_t longest = 0;
+  for (const Bars& group : chart.groups) longest = std::max(longest, group.label.size());
+  return std::clamp(7.0 * static_cast<double>(longest) + 12.0, 40.0, 300.0);
+}
 
 Axis axis_of(const BarChart& chart) {
   double low = 0.0, high = 0.0;
@@ -47,7 +56,8 @@ Axis axis_of(const BarChart& chart) {
   double step = 10.0 * power;
   for (const double factor : {5.0, 2.0, 1.0})
     if (factor * power >= (high - low) / 8.0) step = factor * power;
-  return {std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step, step};
+  return {margin + label_width(chart), std::floor(low / step + 1e-9) * step, std::ceil(high / step - 1e-9) * step,
+          step};
 }
 
 int digits_of(double step) { return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 0, 9); }
@@ -133,7 +143,7 @@ std::string to_svg(const BarChart& chart) {
   double y = top;
   for (const Bars& group : chart.groups) {
     const double height = bar_height * static_cast<double>(group.bars.size());
-    body.text(group.label, {{"x", px(left - 12.0)},
+    body.text(group.label, {{"x", px(axis.left - 12.0)},
                             {"y", px(y + height / 2.0 + 4.0)},
                             {"font-size", "12"},
                             {"fill", ink},

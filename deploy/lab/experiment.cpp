@@ -26,7 +26,6 @@ std::string folder_name(const Experiment& experiment, const std::vector<std::siz
   for (std::size_t i = 0; i < levels.size(); ++i)
     name += (i == 0 ? "" : ",") + plain(experiment.factors[i].name) + "=" +
             plain(experiment.factors[i].levels[levels[i]].label);
-  if (name.empty()) return "run";
   return name.substr(0, longest_name);
 }
 

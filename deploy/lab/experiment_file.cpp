@@ -238,6 +238,7 @@ Experiment read(const Node& root, const std::string& shown_as, const fs::path& f
   if (const Node* set = root.optional("set")) experiment.settings = read_settings(*set);
   const Node& matrix = root.required("matrix");
   for (const Node& factor : matrix.map()) experiment.factors.push_back(read_factor(factor));
+  if (experiment.factors.empty()) matrix.fail("there must be at least one factor");
   check_settings_differ(experiment.factors);
   check_count(matrix, experiment.factors);
   const Node& responses = root.required("responses");

@@ -197,9 +197,11 @@ TEST_F(Sweep, IsAloneInItsFolder) {
         "kervan: 1\nname: hanging\nclock: {mode: lockstep}\n"
         "components:\n  one: {type: test/saboteur, params: {where: timer, how: hang}}\n");
   write("s.yaml",
-        "kervan_sweep: 1\nname: hanging\ncomposition: ./hanging.yaml\nmatrix: {}\nresponses: {ended: ended}\n");
+        "kervan_sweep: 1\nname: hanging\ncomposition: ./hanging.yaml\nmatrix: {one.params.how: [hang]}\nresponses: "
+        "{ended: ended}\n");
   Process first(command({"sweep", "s.yaml"}), folder_.path());
-  ASSERT_TRUE(eventually([&] { return fs::exists(folder_.path() / "sweeps/hanging/runs/run.console"); }));
+  ASSERT_TRUE(
+      eventually([&] { return fs::exists(folder_.path() / "sweeps/hanging/runs/one.params.how=hang.console"); }));
   const Result second = kervan({"sweep", "s.yaml"});
   EXPECT_EQ(second.code, 2);
   EXPECT_EQ(second.err, "--out sweeps/hanging: another sweep is at work in this folder\n");
@@ -228,7 +230,7 @@ TEST_F(Sweep, RefusesWhatTheCompositionDoesNotTakeAtItsPlaceInTheSweep) {
   expect_refused(lab("{seed: [1, -1]}"), "s.yaml:5:20: seed: -1 is out of range; allowed: 0 .. 4294967295");
   expect_refused(lab("{controller: [vff]}"),
                  "s.yaml:5:23: controller: vff is not one of potential_classic, potential_gecui");
-  expect_refused(lab("{}", "set: {drift: 1}\n"), "s.yaml:7:14: drift: 1 is out of range; allowed: 0 .. 0.5");
+  expect_refused(lab("{seed: [1]}", "set: {drift: 1}\n"), "s.yaml:7:14: drift: 1 is out of range; allowed: 0 .. 0.5");
   expect_refused(lab("{r1/control.params.rho0: [1 m, 1]}"), "s.yaml:5:40: rho0: 1 has no unit; write e.g. 1 m");
   expect_refused(lab("{r1/contrl.params.rho0: [1 m]}"),
                  "s.yaml:5:10: there is no component 'r1/contrl'; did you mean 'r1/control'? there are: world, "
@@ -236,9 +238,9 @@ TEST_F(Sweep, RefusesWhatTheCompositionDoesNotTakeAtItsPlaceInTheSweep) {
   expect_refused(lab("{r1/control.type: [1 m]}"),
                  "s.yaml:5:10: 'r1/control.type' names no parameter; write r1/control.params.NAME");
   expect_refused(
-      "kervan_sweep: 1\nname: x\ncomposition: lba\nmatrix: {}\nresponses: {r: result}\n",
+      "kervan_sweep: 1\nname: x\ncomposition: lba\nmatrix: {seed: [1]}\nresponses: {r: result}\n",
       "s.yaml:3:14: composition: there is no composition 'lba'; did you mean 'lab'? there are: " + shipped());
-  expect_refused("kervan_sweep: 1\nname: x\ncomposition: ./c.yaml\nmatrix: {}\nresponses: {r: result}\n",
+  expect_refused("kervan_sweep: 1\nname: x\ncomposition: ./c.yaml\nmatrix: {seed: [1]}\nresponses: {r: result}\n",
                  "s.yaml:3:14: composition: there is no file c.yaml");
 }
 
@@ -253,7 +255,7 @@ TEST_F(Sweep, RefusesACompositionThatIsWrongOnlyUnderItsValues) {
       begin + "matrix: {rate: [1 s, 200 s]}\n" + end,
       "s.yaml:3:14: the run rate=200 s: c.yaml:6:46: after: 200 s is out of range; allowed: 0 .. 100 s (from "
       "${rate})");
-  expect_refused(begin + "set: {mode: wall}\nmatrix: {}\n" + end,
+  expect_refused(begin + "set: {mode: wall}\nmatrix: {rate: [1 s]}\n" + end,
                  "s.yaml:3:14: composition: 'c' runs under clock wall; a sweep runs in lockstep");
 }
 

@@ -40,10 +40,6 @@ TEST(Matrix, IsEveryCombinationWithTheLastFactorFastest) {
                                       "controller=b,seed=1", "controller=b,seed=2", "controller=b,seed=3"}));
 }
 
-TEST(Matrix, WithoutFactorsIsOneRun) {
-  EXPECT_EQ(names(parsed("matrix: {}\n" + responses)), (std::vector<std::string>{"run"}));
-}
-
 TEST(Matrix, GivesEachRunItsValues) {
   const Experiment experiment =
       parsed("set: {drift: 0.002, w: 1}\nmatrix: {w: [2], r1/control.params.rho0: [0.5 m, 1 m]}\n" + responses);
@@ -101,6 +97,7 @@ TEST(Sweep, RefusesWhatIsWrittenWronglyAtItsPlace) {
   EXPECT_EQ(refusal("matrix: {a: 1..1000, b: 1..1000}\n" + responses),
             "s.yaml:4:1: the matrix makes too many runs; allowed: at most 100000");
   EXPECT_EQ(refusal("matrix: {seed: []}\n" + responses), "s.yaml:4:16: seed: there must be at least one value");
+  EXPECT_EQ(refusal("matrix: {}\n" + responses), "s.yaml:4:9: matrix: there must be at least one factor");
   EXPECT_EQ(refusal("matrix: {seed: [1, 2, 1]}\n" + responses),
             "s.yaml:4:16: seed: the value 1 is there twice; keep one of the two");
   EXPECT_EQ(refusal("matrix: {arm: {a: {w: 1}}, w: [1]}\n" + responses),
