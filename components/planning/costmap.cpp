@@ -17,6 +17,19 @@ grid::CellBox grown(const grid::CellBox& box, int by, const grid::CellBox& withi
 /// Half cells from the middle of a cell to the nearest side of one that is `cells` away, squared.
 constexpr std::int32_t square_to(int cells) { return cells == 0 ? 0 : (2 * cells - 1) * (2 * cells - 1); }
 
+/// What a cell of the map is, by its percent.
+class Solid {
+ public:
+  explicit Solid(const CostmapParams& params)
+      : limit_(static_cast<std::int8_t>(std::clamp(params.occupied_above, 0.0, 100.0))),
+        unknown_(!params.unknown_is_free) {}
+  bool operator()(std::int8_t percent) const { return percent < 0 ? unknown_ : percent > limit_; }
+
+ private:
+  std::int8_t limit_;
+  bool unknown_;
+};
+
 }  // namespace
 
 void Costmap::update(grid::Occupancy& map, const grid::CellBox& box) {
@@ -26,11 +39,37 @@ void Costmap::update(grid::Occupancy& map, const grid::CellBox& box) {
     weigh(map, box_);
     return;
   }
-  // Each change reaches some cells into what is around it; many tiles one by one would look at those twice.
-  constexpr std::size_t cells_of_each = std::size_t{grid::tile_side} * grid::tile_side;
-  const std::size_t all = static_cast<std::size_t>(box_.columns) * static_cast<std::size_t>(box_.rows);
-  if (tiles.size() * cells_of_each * 4 > all) return tiles.empty() ? void() : weigh(map, box_);
-  for (const grid::Cell& tile : tiles) weigh(map, grid::cells_of_tile(tile));
+  std::vector<grid::CellBox> changes;
+  std::size_t felt = 0;
+  for (const grid::Cell& tile : tiles) {
+    const grid::CellBox changed = turned(map, grown(grid::cells_of_tile(tile), 0, box_));
+    if (changed.empty()) continue;
+    changes.push_back(changed);
+    const grid::CellBox around = grown(changed, reach_, box_);
+    felt += static_cast<std::size_t>(around.columns) * static_cast<std::size_t>(around.rows);
+  }
+  // Each change reaches some cells into what is around it; many one by one would look at those twice.
+  if (felt > static_cast<std::size_t>(box_.columns) * static_cast<std::size_t>(box_.rows)) return weigh(map, box_);
+  for (const grid::CellBox& changed : changes) weigh(map, changed);
+}
+
+/// Around the cells that have become obstacles, or are none any more; empty if there are none.
+grid::CellBox Costmap::turned(const grid::Occupancy& map, const grid::CellBox& where) const {
+  if (where.empty()) return {};
+  const Solid solid(params_);
+  int left = where.columns, right = -1, bottom = where.rows, top = -1;
+  for (int y = 0; y < where.rows; ++y) {
+    const std::int8_t* const percent = map.place({where.x, where.y + y});
+    const std::uint8_t* const weights = weights_.data() + index(where.x - box_.x + 1, where.y + y - box_.y + 1);
+    for (int x = 0; x < where.columns; ++x) {
+      if (solid(percent[x]) == (weights[x] == occupied)) continue;
+      left = std::min(left, x);
+      right = std::max(right, x);
+      bottom = std::min(bottom, y);
+      top = y;
+    }
+  }
+  return {where.x + left, where.y + bottom, right - left + 1, top - bottom + 1};
 }
 
 void Costmap::begin(const grid::CellBox& box, double resolution) {
@@ -81,14 +120,10 @@ void Costmap::measure_columns(const grid::Occupancy& map, const grid::CellBox& f
   const int far = reach_ + 1;
   squares_.assign(width * static_cast<std::size_t>(to.rows), far);
   nearest_.assign(width, far);
+  const Solid solid(params_);
   const auto pass = [&](int y) {
     const std::int8_t* const percent = map.place({from.x, y});
-    const auto limit = static_cast<std::int8_t>(std::clamp(params_.occupied_above, 0.0, 100.0));
-    const std::int8_t unknown = params_.unknown_is_free ? std::int8_t{0} : std::int8_t{1};
-    for (std::size_t x = 0; x < width; ++x) {
-      const bool solid = percent[x] < 0 ? unknown != 0 : percent[x] > limit;
-      nearest_[x] = solid ? 0 : std::min(nearest_[x] + 1, far);
-    }
+    for (std::size_t x = 0; x < width; ++x) nearest_[x] = solid(percent[x]) ? 0 : std::min(nearest_[x] + 1, far);
     if (y < to.y || y >= to.y + to.rows) return;
     std::int32_t* const row = squares_.data() + static_cast<std::size_t>(y - to.y) * width;
     for (std::size_t x = 0; x < width; ++x) row[x] = std::min(row[x], nearest_[x]);

@@ -84,6 +84,7 @@ class Costmap {
  private:
   bool weighs_distance() const { return params_.clearance > 0.0 && params_.clearance_cost > 0.0; }
   void begin(const grid::CellBox& box, double resolution);
+  grid::CellBox turned(const grid::Occupancy& map, const grid::CellBox& where) const;
   void weigh(const grid::Occupancy& map, const grid::CellBox& changed);
   void measure_columns(const grid::Occupancy& map, const grid::CellBox& from, const grid::CellBox& to);
   void measure_row(int width, int margin_left, int to_width, const std::int32_t* squares, std::uint8_t* weights);
