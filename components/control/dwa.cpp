@@ -13,8 +13,12 @@ using geometry::Vector2;
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 constexpr float step_time = 0.1f;  // s
-/// Of a robot that is nearer to something than its margin already: noise may make it seem to come nearer.
+/// A robot that is nearer to something than its margin already may come nearer by this in a motion, or it could not
+/// even drive along it.
 constexpr float slack = 0.002f;  // m
+/// With less than this share of its margin it may only move to where it has more: by many motions, each with its slack
+/// and seen with noise, it would touch in the end.
+constexpr float least_share = 0.4f;
 /// A target nearer than this has no direction.
 constexpr float no_direction = 0.05f;  // m
 
@@ -148,13 +152,14 @@ float DynamicWindow::cost(float v, float w) const {
   const float to_face =
       std::abs(soon.w) * period + square(soon.w) / (2.0f * static_cast<float>(params_.turn_acceleration));
 
-  float way = 0.0f, turned = 0.0f, time = 0.0f, dearer = 0.0f, result = infinity;
+  const bool moves = v != 0.0f || w != 0.0f;
+  float way = 0.0f, turned = 0.0f, time = 0.0f, dearer = 0.0f, room = 0.0f, result = infinity;
   while (time < horizon - 0.5f * step_time) {
     const State before = state;
     drive(state, v, w, step_time);
-    const float room = clearance(state);
+    room = clearance(state);
     if (room < allowed_) {
-      if (way < to_stop || turned < to_face) return infinity;
+      if ((moves && wanted_ > 0.0f) || way < to_stop || turned < to_face) return infinity;
       // It would have to stand there for the rest of the time.
       if (result == infinity) result = horizon + dearer + time_left(before);
       break;
@@ -172,6 +177,7 @@ float DynamicWindow::cost(float v, float w) const {
     if (way >= distance && result == infinity) result = time + dearer + time_left(state);
     if (result < infinity && way >= to_stop && turned >= to_face) break;
   }
+  if (moves && room < wanted_) return infinity;
   if (result == infinity) result = time + dearer + time_left(state);
   const float change = std::abs(v - static_cast<float>(last_.linear)) / v_max +
                        std::abs(w - static_cast<float>(last_.angular)) / static_cast<float>(params_.turn_rate);
@@ -194,7 +200,9 @@ DwaStep DynamicWindow::step(const RobotState& robot, const Vector2& target, std:
   const Vector2 to_target = begin.inverse() * target;
   target_ = {static_cast<float>(to_target.x()), static_cast<float>(to_target.y())};
   const float room = clearance(begin_);
-  allowed_ = std::min(static_cast<float>(params_.margin), room - slack);
+  const float least = least_share * static_cast<float>(params_.margin);
+  wanted_ = room < least ? least : 0.0f;
+  allowed_ = room < least ? room : std::max(least, std::min(static_cast<float>(params_.margin), room - slack));
   step.clearance = static_cast<double>(room);
 
   const auto v_max = static_cast<float>(params_.v_max), v_back = static_cast<float>(params_.v_back);

@@ -92,7 +92,8 @@ class DynamicWindow {
   // Of the step at hand, in the frame of the robot when its command takes effect.
   State begin_;
   Spot target_{};
-  float allowed_ = 0.0f;                               // m of clearance
+  float allowed_ = 0.0f;                               // m of clearance, on the way
+  float wanted_ = 0.0f;                                // m of clearance, in the end, of a motion; 0: any
   std::vector<Spot> spots_;                            // bin by bin
   std::array<std::uint32_t, side * side + 1> bins_{};  // where the spots of a bin begin
   std::vector<std::uint32_t> bin_of_;

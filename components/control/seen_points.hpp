@@ -16,7 +16,7 @@ namespace kervan::control {
 struct SeenPointsParams {
   double reach = 2.5;                          ///< m; points farther from the sensor are left out
   double spacing = 0.04;                       ///< m; of points in one square of this side one is kept
-  Duration memory = std::chrono::seconds(10);  ///< how long a point is kept that the sensor cannot see any more
+  Duration memory = std::chrono::seconds(60);  ///< how long a point is kept that the sensor cannot see any more
 };
 
 /// Points stand in the frame of the odometry. A scan replaces all that it can see: what lies within its field of view

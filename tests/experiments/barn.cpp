@@ -18,6 +18,7 @@
 
 #include "components/observe/barn_score.hpp"
 #include "components/observe/map_drawing.hpp"
+#include "components/observe/polyline.hpp"
 #include "sim/files/robot_file.hpp"
 #include "tests/experiments/barn_robot.hpp"
 #include "tests/experiments/barn_world.hpp"
@@ -52,11 +53,6 @@ BarnRobotParams jackal(double v_max) {
   return params;
 }
 
-BarnRobotParams told_only_the_goal(BarnRobotParams params) {
-  params.plans = false;
-  return params;
-}
-
 BarnRobotParams pioneer() {
   BarnRobotParams params;
   // Far echoes of such wide cones would close every gap.
@@ -84,11 +80,7 @@ BarnRobotParams pioneer() {
 
 std::vector<Contender> contenders() {
   return {
-      {.name = "dwa",
-       .help = "control/dwa at 0.5 m/s, told only the goal",
-       .model = "jackal",
-       .params = told_only_the_goal(jackal(0.5))},
-      {.name = "baseline", .help = "the stack at 0.5 m/s", .model = "jackal", .params = jackal(0.5)},
+      {.name = "baseline", .help = "the stack at up to 0.5 m/s", .model = "jackal", .params = jackal(0.5)},
       {.name = "stack",
        .help = "the stack at up to 1.3 m/s",
        .model = "jackal",
@@ -176,6 +168,7 @@ Run drive(const Contender& contender, const BarnWorld& world, int seed, const Op
                 body.body().min_clearance(),
                 body.pose().position()};
   if (!options.pictures.empty() && (run.outcome != BarnOutcome::success || !options.worlds.empty())) {
+    drawn.truth = observe::simplified(drawn.truth, 0.01);
     drawn.route = robot.route();
     drawn.reached = run.outcome == BarnOutcome::success;
     if (run.outcome == BarnOutcome::collision) drawn.contacts.push_back(run.end);

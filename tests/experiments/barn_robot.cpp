@@ -50,7 +50,7 @@ void BarnRobot::step(sim::Simulation& simulation) {
   }
   // What is measured now is heard at the next tick.
   hear(simulation.robots().front());
-  if (params_.plans && simulation.now() % params_.map_period == 0ms && state_) replan(now);
+  if (simulation.now() % params_.map_period == 0ms && state_) replan(now);
   simulation.step(10ms);
 }
 
@@ -72,7 +72,7 @@ void BarnRobot::hear_laser(const sim::Robot& robot) {
                             ranges_};
   const geometry::Pose2 at = state_->pose * laser.pose;
   seen_.look(at, scan, Time(robot.laser().stamp));
-  if (params_.plans) std::get<mapping::LaserMapper>(mapper_).add(at, scan);
+  std::get<mapping::LaserMapper>(mapper_).add(at, scan);
   near_.clear();
   for (std::size_t i = 0; i < ranges_.size(); ++i) {
     const auto range = static_cast<double>(ranges_[i]);
@@ -91,8 +91,7 @@ void BarnRobot::hear_sonars(const sim::Robot& robot) {
   for (std::size_t i = 0; i < ring.poses.size(); ++i) {
     const double range = robot.sonar().ranges[i];
     const geometry::Pose2& transducer = ring.poses[i];
-    if (params_.plans)
-      std::get<mapping::SonarMapper>(mapper_).add(state_->pose * transducer, range, {ring.min_range, ring.max_range});
+    std::get<mapping::SonarMapper>(mapper_).add(state_->pose * transducer, range, {ring.min_range, ring.max_range});
     if (!(range >= 0.0 && range <= ring.max_range)) continue;
     echoes_.push_back(state_->pose * (transducer * Vector2(range, 0.0)));
     for (const double angle : {-0.5 * ring.field_of_view, 0.0, 0.5 * ring.field_of_view})

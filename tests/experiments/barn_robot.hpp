@@ -23,7 +23,6 @@
 namespace kervan::test {
 
 struct BarnRobotParams {
-  bool plans = true;  ///< else the goal is all that the controller is told
   /// Out of which sensor the map is made; the other one is not listened to at all.
   std::variant<mapping::LaserMapperParams, mapping::SonarMapperParams> mapper =
       mapping::LaserMapperParams{.max_range = 8.0, .no_echo_limit = 8.0};

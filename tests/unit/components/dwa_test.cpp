@@ -140,9 +140,19 @@ TEST(Dwa, WithoutDrivingBackwardItStaysInTheNiche) {
 
 TEST(Dwa, NearerThanItsMarginItMovesAway) {
   Driven robot;
-  add_wall(robot.points, {-1.0, 0.235}, {1.0, 0.235});  // 2 cm beside its left side
+  add_wall(robot.points, {-1.0, 0.245}, {1.0, 0.245});  // 3 cm beside its left side
   EXPECT_TRUE(robot.reaches({2.0, -0.3}, 10.0));
   EXPECT_GE(robot.least_clearance, 0.02 - 0.005);
+}
+
+TEST(Dwa, MuchNearerItTurnsNoFurtherIn) {
+  Driven robot;
+  robot.params.v_back = 0.0;
+  add_wall(robot.points, {-1.0, 0.23}, {1.0, 0.23});  // 1.5 cm beside its left side
+  add_wall(robot.points, {0.275, -0.5}, {0.275, 0.23});
+  EXPECT_FALSE(robot.reaches({-1.0, -1.0}, 10.0)) << "it would have to turn on the spot";
+  EXPECT_GE(robot.least_clearance, 0.0149);
+  EXPECT_NEAR(robot.pose.yaw, 0.0, 0.01);
 }
 
 TEST(Dwa, EnclosedItSaysThatNoMotionIsAdmissible) {
