@@ -1,67 +1,27 @@
-#include <spdlog/spdlog.h>
-
-#include <algorithm>
-#include <cmath>
-#include <optional>
-#include <stdexcept>
-#include <string>
-#include <utility>
-
-#include "components/grid/messages.hpp"
 #include "components/planning/grid_planner.hpp"
-#include "components/planning/planner_shell.hpp"
-#include "nav_msgs/msg/OccupancyGrid.hpp"
+#include "components/planning/grid_planner_shell.hpp"
 
 namespace kervan::planning {
 namespace {
 
-/// Of a cell: in the map, in the costmap, its label, its parent and its place in the queue.
-constexpr int cell_bytes = 32;
-constexpr int mebibyte = 1024 * 1024;
-
-enum class Unknown { free, obstacle };
-
-struct AstarGridParams {
-  GridPlannerParams grid;
-  std::optional<FilePath> map;
-  Unknown unknown = Unknown::free;
-  double escape = 0.5;
-  double tolerance = 0.25;
+struct AstarGridParams : GridShellParams {
+  SearchChoice search = SearchChoice::automatic;
+  bool any_angle = true;
   std::int64_t most_expanded = 0;
   double dearer = 0.2;
-  double memory = 256.0;
-  PlannerShellParams shell;
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(map, "map", {.help = "Map of map_server to begin with; without it the map comes from the ports."});
-    v(grid.costs.radius, "radius",
-      {.unit = "m", .min = 0.0, .max = 5.0, .help = "No obstacle may be nearer to the robot's middle."});
-    v(grid.costs.clearance, "clearance",
+    v(costs.clearance, "clearance",
       {.unit = "m", .min = 0.0, .max = 10.0, .help = "Beyond the radius, where nearness to an obstacle costs."});
-    v(grid.costs.clearance_cost, "clearance_cost",
+    v(costs.clearance_cost, "clearance_cost",
       {.min = 0.0,
        .max = Costmap::most_clearance_cost,
        .help = "What a metre costs more right at the radius; 0: only the length counts."});
-    v(grid.costs.occupied_above, "occupied_above",
-      {.min = 0.0, .max = 99.0, .help = "Per cent; a cell that is occupied with more is an obstacle."});
-    v(unknown, "unknown", {.choices = {"free", "obstacle"}, .help = "What cells are of which nothing is known."});
-    v(grid.search, "search",
+    v(search, "search",
       {.choices = {"auto", "all_neighbours", "canonical", "jump_point"},
        .help = "Which cells are looked at; auto: jump points if only the length counts, else canonical."});
-    v(grid.any_angle, "any_angle", {.help = "The way is pulled taut; else it leads over middles of cells."});
-    v(escape, "escape",
-      {.unit = "m",
-       .min = 0.0,
-       .max = 10.0,
-       .help = "How far a robot too near to an obstacle may go to a free place; 0: not at all.",
-       .live = true});
-    v(tolerance, "tolerance",
-      {.unit = "m",
-       .min = 0.0,
-       .max = 100.0,
-       .help = "How far from a goal that cannot be reached the route may end.",
-       .live = true});
+    v(any_angle, "any_angle", {.help = "The way is pulled taut; else it leads over middles of cells."});
     v(most_expanded, "most_expanded",
       {.min = 0, .max = 1'000'000'000, .help = "Cells that a plan may look at; 0: all.", .live = true});
     v(dearer, "dearer",
@@ -69,166 +29,27 @@ struct AstarGridParams {
        .max = 1000.0,
        .help = "There is a new plan when the way left costs more than this share more than it did.",
        .live = true});
-    v(memory, "memory", {.unit = "", .min = 0.1, .max = 16384.0, .help = "That map and search may take, in MiB."});
-    shell.describe(v);
+    GridShellParams::describe(v);
   }
-
-  GridPlannerParams of_planner() const {
-    GridPlannerParams params = grid;
-    params.costs.unknown_is_free = unknown == Unknown::free;
-    return params;
-  }
-  std::size_t most_cells() const { return static_cast<std::size_t>(memory * double{mebibyte} / double{cell_bytes}); }
 };
 
-/// Plans on an occupancy grid (grid_planner.hpp): a file's, a whole map's, or one that arrives tile by tile.
-class AstarGridComponent final : public PlannerShell {
-  const AstarGridParams& params_ = checked(parameters<AstarGridParams>());
-  GridPlanner planner_{params_.of_planner()};
-  Input<kervan_msgs::msg::MapTile> tiles_{this, "tiles", qos::latched.optional(), &AstarGridComponent::on_tile,
-                                          "Tiles of the map that have changed."};
-  Input<nav_msgs::msg::OccupancyGrid> map_{this, "map", qos::latched.optional(), &AstarGridComponent::on_map,
-                                           "A whole map; it replaces what was there."};
-  grid::CellBox known_;  ///< where the map is; cells_ has some more around it
-  grid::Occupancy cells_ = from_file();
-  bool tiled_ = false;  ///< tiles came: what is beyond them is unknown, not outside
-  std::uint64_t refused_ = 0;
-  std::string trouble_;
-  Plan plan_;
-  RouteWatch watch_;
-  bool changed_ = false;  ///< the map, since the last look at the route
+/// Plans by search over the cells (grid_planner.hpp).
+class AstarGridComponent final : public GridPlannerShell<AstarGridParams> {
+  GridPlanner planner_{{checked_costs(), params_.search, params_.any_angle}};
 
- public:
-  // A plan may take longer than others want to wait for their turn.
-  AstarGridComponent() { wants_own_thread(); }
-
- private:
-  static const AstarGridParams& checked(const AstarGridParams& params) {
-    if (params.grid.search == SearchChoice::jump_point && !Costmap(params.grid.costs).uniform())
+  CostmapParams checked_costs() const {
+    const CostmapParams costs = params_.of_costmap();
+    if (params_.search == SearchChoice::jump_point && !Costmap(costs).uniform())
       throw ParameterError("search", "jump_point needs cells that all cost the same; allowed with clearance_cost: 0");
-    return params;
+    return costs;
   }
 
-  grid::Occupancy from_file() {
-    if (!params_.map || describing()) return {0.05, -1, params_.most_cells()};
-    const map_file::GridMap file = map_file::load(params_.map->path);
-    try {
-      return taken(file);
-    } catch (const std::invalid_argument& error) {
-      throw ParameterError("map", error.what());
-    }
+  MapPlanner& planner() override { return planner_; }
+  void complete(Query& query) const override { query.most_expanded = static_cast<std::size_t>(params_.most_expanded); }
+  std::string effort(const Plan& plan) const override {
+    return "looked at " + std::to_string(plan.expanded) + " cells";
   }
-
-  grid::Occupancy taken(const map_file::GridMap& map) {
-    // In whole tiles, and one more for where they begin.
-    const auto whole = [](int cells) { return std::uint64_t{static_cast<unsigned>(cells / grid::tile_side + 2)}; };
-    constexpr std::uint64_t tile = std::uint64_t{grid::tile_side} * grid::tile_side;
-    if (const std::uint64_t cells = whole(map.columns) * whole(map.rows) * tile; cells > params_.most_cells())
-      throw std::invalid_argument("the map of " + std::to_string(map.columns) + " x " + std::to_string(map.rows) +
-                                  " cells needs a memory of " + std::to_string(cells * cell_bytes / mebibyte + 1) +
-                                  " MiB");
-    grid::Occupancy cells = grid::from_map_file(map, params_.most_cells());
-    known_ = grid::cells_of(map);
-    return cells;
-  }
-
-  void on_map(const nav_msgs::msg::OccupancyGrid& message, Time now) {
-    const auto& info = message.info;
-    const std::size_t count = std::size_t{info.width} * info.height;
-    if (!(info.resolution > 0.0f) || count == 0 || info.width > Costmap::widest || info.height > Costmap::widest ||
-        message.data.size() != count)
-      return refuse("map: its size or the number of its cells is none");
-    if (std::any_of(message.data.begin(), message.data.end(), [](std::int8_t p) { return p < -1 || p > 100; }))
-      return refuse("map: a percentage is none");
-    try {
-      cells_ = taken({geometry::pose_of(info.origin), static_cast<double>(info.resolution),
-                      static_cast<int>(info.width), static_cast<int>(info.height), message.data});
-    } catch (const std::invalid_argument& error) {
-      return refuse(std::string("map: ") + error.what());
-    }
-    tiled_ = false;
-    changed_ = true;
-    try_to_plan(now);
-  }
-
-  void on_tile(const kervan_msgs::msg::MapTile& message, Time now) {
-    const grid::TileView tile = grid::view_of(message);
-    if (known_.empty() && tile.resolution > 0.0 && std::isfinite(tile.resolution))
-      cells_ = grid::Occupancy(tile.resolution, -1, params_.most_cells());
-    switch (grid::fault_of(tile, cells_.resolution())) {
-      case grid::TileFault::none: break;
-      case grid::TileFault::resolution: return refuse("tiles: cells of another size are left out");
-      case grid::TileFault::size: return refuse("tiles: tiles of another size are left out");
-      case grid::TileFault::value: return refuse("tiles: a percentage is none, its tile is left out");
-      case grid::TileFault::place: return refuse("tiles: a tile too far from the map's origin is left out");
-    }
-    const grid::CellBox box = grid::cells_of_tile(tile.tile);
-    if (!fits(box) || grid::put(tile, cells_) == grid::Growth::refused)
-      return refuse("tiles: memory is used up, tiles beyond the map are left out");
-    cells_.touch(box);
-    known_ = grid::united(known_, box);
-    tiled_ = true;
-    // More tiles may come at the same time: the route is looked at when all are there.
-    changed_ = true;
-    if (waiting()) try_to_plan(now);
-  }
-
-  void refuse(std::string why) {
-    ++refused_;
-    trouble_ = std::move(why);
-  }
-
-  /// As far as the searches can count cells.
-  bool fits(const grid::CellBox& box) const {
-    const grid::CellBox all = grid::united(known_, box);
-    return all.columns <= Costmap::widest && all.rows <= Costmap::widest;
-  }
-
-  /// What no tile has shown yet is unknown, but as good a way as any, if the unknown is free.
-  void look_beyond(const geometry::Vector2& place) {
-    constexpr double around = 2.0;  // m
-    if (!tiled_ || params_.unknown != Unknown::free || !grid::has_cell(place)) return;
-    const grid::Cell cell = grid::cell_of(place, cells_.resolution());
-    const int margin = static_cast<int>(around / cells_.resolution());
-    const grid::CellBox box{cell.x - margin, cell.y - margin, 2 * margin + 1, 2 * margin + 1};
-    if (fits(box) && cells_.cover(box) != grid::Growth::refused) known_ = grid::united(known_, box);
-  }
-
-  std::string needs() const override {
-    if (!known_.empty()) return {};
-    return refused_ > 0 ? trouble_ : tiles_.missing();
-  }
-  std::string trouble() const override { return trouble_; }
-  const PlannerShellParams& shell_params() const override { return params_.shell; }
-
-  const Plan& plan(const geometry::Vector2& start, const geometry::Vector2& goal) override {
-    look_beyond(start);
-    look_beyond(goal);
-    planner_.update(cells_, known_);
-    planner_.plan({start, goal, params_.escape, params_.tolerance, static_cast<std::size_t>(params_.most_expanded)},
-                  plan_);
-    if (plan_.outcome == Outcome::found) watch_.watch(planner_.costmap(), plan_.points);
-    changed_ = false;
-    return plan_;
-  }
-
-  RouteChange route_change(double along) override {
-    if (!std::exchange(changed_, false)) return RouteChange::none;
-    planner_.update(cells_, known_);
-    return watch_.look(planner_.costmap(), along, params_.dearer);
-  }
-
-  void announce(const Plan& plan, const geometry::Vector2& goal, const std::string& again) override {
-    if (!again.empty()) log().info("plans again: {}", again);
-    log().info("route to ({:.2f}, {:.2f}) over {} points: {:.2f} m; looked at {} cells", goal.x(), goal.y(),
-               plan.points.size(), plan.length, plan.expanded);
-    if (plan.start_moved > 0.0) log().info("it begins with {:.2f} m to a free place", plan.start_moved);
-    if (plan.goal_moved > 0.0) log().warn("it ends {:.2f} m from the goal", plan.goal_moved);
-  }
-
-  void on_shutdown(Time) override {
-    if (refused_ > 0) log().warn("left out {} maps and tiles", refused_);
-  }
+  double tolerated_rise() const override { return params_.dearer; }
 };
 
 }  // namespace

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -26,8 +27,11 @@ struct Query {
   geometry::Vector2 goal = geometry::Vector2::Zero();
   double escape = 0.0;     ///< m; a start that is occupied may be left in a straight line of at most this length
   double tolerance = 0.0;  ///< m; a goal that cannot be reached may be missed by this much
-  /// Nodes that the search may expand; 0: all. A number and not a time, so that the same query has the same answer on
-  /// every machine, however busy it is.
+  /// rad, in the map's frame; for robots that cannot turn on the spot. Nothing: any will do.
+  double start_heading = 0.0;
+  std::optional<double> goal_heading = {};
+  /// Nodes that the search may expand, or what the planner counts instead; 0: all. A number and not a time, so that the
+  /// same query has the same answer on every machine, however busy it is.
   std::size_t most_expanded = 0;
 };
 
@@ -35,6 +39,7 @@ struct Plan {
   Outcome outcome = Outcome::no_path;
   std::string_view why;                   ///< one sentence; empty if found; never changes once made
   std::vector<geometry::Vector2> points;  ///< from the start to where the plan ends, to be joined by straight lines
+  std::vector<double> headings;           ///< rad, of the robot at each point; empty: it may turn on the spot
   double length = 0.0;                    ///< m, along the points
   double cost = 0.0;                      ///< m, dearer metres counted more; of the search, before it was straightened
   double start_moved = 0.0;               ///< m, from the start to the free place that the search began from
@@ -42,8 +47,8 @@ struct Plan {
   std::size_t expanded = 0;               ///< nodes whose neighbours were looked at
 };
 
-/// Finds a way from one point to another. It holds no clock and starts no thread; a query's answer depends on the query
-/// and the map alone.
+/// Finds a way from one point to another. It starts no thread. A query's answer depends on the query and the map alone,
+/// unless the planner is one that is given a time and the query has no most_expanded.
 class Planner {
  public:
   virtual ~Planner() = default;

@@ -67,7 +67,7 @@ class PlannerShell : public Component {
   /// What the planner needs before it can plan at all, and does not have; empty: nothing.
   virtual std::string needs() const { return {}; }
   /// Good until the next call.
-  virtual const Plan& plan(const geometry::Vector2& start, const geometry::Vector2& goal) = 0;
+  virtual const Plan& plan(const geometry::Pose2& start, const geometry::Pose2& goal) = 0;
   /// What has become of the last plan's points from `along` on, m from their beginning; asked often.
   virtual RouteChange route_change(double along) {
     static_cast<void>(along);
@@ -78,6 +78,9 @@ class PlannerShell : public Component {
   /// What has been wrong with the inputs, as long as the planner works; empty: nothing.
   virtual std::string trouble() const { return {}; }
 
+  /// Another goal has come while a plan is being made: nobody needs that plan any more.
+  bool superseded() const { return goal_.waiting() || goals_.waiting(); }
+
   /// A goal waits for its first plan.
   bool waiting() const { return under_way() && !planned_; }
 
@@ -85,10 +88,10 @@ class PlannerShell : public Component {
   void try_to_plan(Time now) {
     const auto* odometry = odom_.latest();
     if (!under_way() || !odometry || !needs().empty()) return;
-    const geometry::Vector2 robot = geometry::position_of(odometry->pose.pose);
+    const geometry::Pose2 robot = geometry::pose_of(odometry->pose.pose);
     policy_.set_params(shell_params().replan);
-    policy_.move(now, robot);
-    if (arrive(robot, now)) return;
+    policy_.move(now, robot.position());
+    if (arrive(robot.position(), now)) return;
     if (policy_.route_is_good()) switch (route_change(policy_.place().along())) {
         case RouteChange::none: break;
         case RouteChange::dearer: policy_.ask("the route has become dearer"); break;
@@ -107,7 +110,7 @@ class PlannerShell : public Component {
   struct Goal {
     std::string id;
     std::string frame;
-    geometry::Vector2 at;
+    geometry::Pose2 at;
   };
 
   static constexpr Duration patience = std::chrono::milliseconds(100);  ///< with something that is missing
@@ -136,14 +139,14 @@ class PlannerShell : public Component {
   bool under_way() const { return state_ == GoalState::GOAL_PENDING || state_ == GoalState::GOAL_ACTIVE; }
 
   void on_goal(const geometry_msgs::msg::PoseStamped& goal, Time now) {
-    send_to({{geometry::goal_id_of(goal.header.stamp), goal.header.frame_id, geometry::position_of(goal.pose)}}, now);
+    send_to({{geometry::goal_id_of(goal.header.stamp), goal.header.frame_id, geometry::pose_of(goal.pose)}}, now);
   }
 
   void on_goals(const nav_msgs::msg::Path& goals, Time now) {
     std::vector<Goal> list;
     for (const auto& pose : goals.poses)
       list.push_back({geometry::goal_id_of(goals.header.stamp) + "/" + std::to_string(list.size() + 1),
-                      goals.header.frame_id, geometry::position_of(pose.pose)});
+                      goals.header.frame_id, geometry::pose_of(pose.pose)});
     send_to(std::move(list), now);
   }
 
@@ -181,24 +184,24 @@ class PlannerShell : public Component {
     report(now);
   }
 
-  void make_plan(const geometry::Vector2& robot, Time now) {
+  void make_plan(const geometry::Pose2& robot, Time now) {
     const bool again = std::exchange(planned_, true);
-    const geometry::Vector2 goal = list_.front().at;
+    const geometry::Pose2 goal = list_.front().at;
     const Plan& found = plan(robot, goal);
     failure_ = found.why;
     if (found.outcome == Outcome::found) {
       policy_.planned(now, found.points);
       route_end_ = found.points.back();
       goal_moved_ = found.goal_moved;
-      publish(found.points, now);
-      announce(found, goal, again ? policy_.reason() : std::string());
+      publish(found, now);
+      announce(found, goal.position(), again ? policy_.reason() : std::string());
       if (state_ != GoalState::GOAL_ACTIVE) enter(GoalState::GOAL_ACTIVE, {}, now);
-      arrive(robot, now);
+      arrive(robot.position(), now);
     } else {
       policy_.failed(now, found.why);
       if (!policy_.route_is_good()) stop(now);
       // What is no place will not become one.
-      if (!goal.allFinite()) return fail(failure_, now);
+      if (!goal.position().allFinite()) return fail(failure_, now);
       if (policy_.step(now) == ReplanPolicy::Step::give_up) return fail(policy_.reason(), now);
     }
     report(now);
@@ -223,7 +226,7 @@ class PlannerShell : public Component {
     if (state_ != GoalState::GOAL_ACTIVE) return false;
     const double within = shell_params().reached_within;
     const bool at_end = goal_moved_ > 0.0 && (route_end_ - robot).norm() <= within;
-    if (!at_end && !((list_.front().at - robot).norm() <= within)) return false;
+    if (!at_end && !((list_.front().at.position() - robot).norm() <= within)) return false;
     policy_.end();
     enter(GoalState::GOAL_REACHED, goal_moved_ > 0.0 ? "as near as there is a free place" : "", now);
     if (list_.size() == 1) return true;
@@ -236,7 +239,7 @@ class PlannerShell : public Component {
   double distance() const {
     const auto* odometry = odom_.latest();
     if (!odometry) return std::numeric_limits<double>::quiet_NaN();
-    return (list_.front().at - geometry::position_of(odometry->pose.pose)).norm();
+    return (list_.front().at.position() - geometry::position_of(odometry->pose.pose)).norm();
   }
 
   void enter(GoalState state, std::string why, Time now) {
@@ -250,15 +253,16 @@ class PlannerShell : public Component {
     status_.publish(std::move(status));
   }
 
-  void publish(const std::vector<geometry::Vector2>& points, Time now) {
+  void publish(const Plan& plan, Time now) {
     answered_ = true;
-    driving_ = !points.empty();
+    driving_ = !plan.points.empty();
     auto path = route_.loan_uncleared();
     geometry::set_header(path->header, now, list_.front().frame);
-    path->poses.resize(points.size());
-    for (std::size_t i = 0; i < points.size(); ++i) {
+    path->poses.resize(plan.points.size());
+    for (std::size_t i = 0; i < plan.points.size(); ++i) {
       path->poses[i].header = path->header;
-      path->poses[i].pose = geometry::to_message(geometry::Pose2{points[i].x(), points[i].y(), 0.0});
+      const double heading = plan.headings.empty() ? 0.0 : plan.headings[i];
+      path->poses[i].pose = geometry::to_message(geometry::Pose2{plan.points[i].x(), plan.points[i].y(), heading});
     }
     route_.publish(std::move(path));
   }

@@ -71,8 +71,8 @@ class WaypointAstarComponent final : public PlannerShell {
 
   void on_parameters_changed() override { planner_.set_reach(params_.reach); }
 
-  const Plan& plan(const geometry::Vector2& start, const geometry::Vector2& goal) override {
-    planner_.plan({.start = start, .goal = goal}, plan_);
+  const Plan& plan(const geometry::Pose2& start, const geometry::Pose2& goal) override {
+    planner_.plan({.start = start.position(), .goal = goal.position()}, plan_);
     return plan_;
   }
 

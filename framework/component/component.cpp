@@ -87,6 +87,10 @@ void Component::finish(std::string why) {
   if (instance_) instance_->container().request_finish(instance_->index(), std::move(why));
 }
 
+bool Component::lockstep() const {
+  return instance_ && instance_->container().spec().clock == runtime::ClockMode::lockstep;
+}
+
 Time Component::now() const { return instance_ ? instance_->instant().time : Time{}; }
 
 spdlog::logger& Component::log() const {
@@ -112,6 +116,8 @@ std::vector<dds::SampleBlock*> InputBase::take_blocks() {
 std::vector<dds::SampleBlock*> InputBase::instance_blocks() const {
   return port_ ? port_->instances() : std::vector<dds::SampleBlock*>();
 }
+
+bool InputBase::waiting() const { return port_ && port_->waiting(); }
 
 std::string InputBase::missing() const { return port_ ? port_->missing() : info_.name + ": not connected yet"; }
 

@@ -92,6 +92,10 @@ class Component {
   /// The time of the handler that runs; for code that is not handed it.
   Time now() const;
 
+  /// Under lockstep the same run gives the same trace every time: a handler that may take only so long counts its work
+  /// instead of looking at a clock. False before the component is activated.
+  bool lockstep() const;
+
   /// This component's logger: to the console, the run's folder and /rosout. Include <spdlog/logger.h> to use it.
   spdlog::logger& log() const;
 

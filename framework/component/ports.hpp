@@ -50,6 +50,10 @@ class InputBase {
   /// "odom: nothing received yet", "odom: no sample for more than 0.50 s".
   std::string missing() const;
 
+  /// A sample has arrived while the present handler runs, and waits for its own: for handlers that take long and may
+  /// no longer be needed. Always false under lockstep, where nothing arrives meanwhile.
+  bool waiting() const;
+
  protected:
   using Deliver = std::function<void(dds::SampleBlock*, Time)>;
 

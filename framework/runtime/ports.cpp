@@ -247,6 +247,14 @@ std::string InputPort::missing() const {
   return input_.name() + text;
 }
 
+bool InputPort::waiting() const {
+  if (clock_ == ClockMode::lockstep) return false;
+  lock();
+  const bool some = inbox_.size() > inbox_first_;
+  unlock();
+  return some;
+}
+
 OutputPort::OutputPort(OutputBase& output, const PortBinding& binding, ComponentInstance& owner, dds::Domain& domain,
                        ClockMode clock, unsigned index)
     : output_(output),

@@ -67,6 +67,7 @@ class InputPort final : public dds::SampleSink {
   std::vector<dds::SampleBlock*> take();
   std::vector<dds::SampleBlock*> instances() const;
   std::string missing() const;
+  bool waiting() const;
 
   void on_sample(const dds::Arrival& arrival) noexcept override;
   void on_writer_gone(std::uint64_t writer) noexcept override;

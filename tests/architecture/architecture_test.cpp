@@ -78,6 +78,8 @@ const std::vector<Arrow> arrows = {
       "framework/geometry/", messages}},
     {"components/[^/]+/[^/]+_component\\.cpp",
      {own_folder, "components/grid/", "framework/kervan.hpp", "framework/component/", "framework/geometry/", messages}},
+    {"components/planning/grid_planner_shell\\.hpp",
+     {own_folder, "components/grid/", "framework/kervan.hpp", "framework/geometry/", messages}},
     // One shell around seven behaviours, each a declaration in its own component; one around the planners, and one
     // around the controllers, two of which show the forces that steer them.
     {"components/(behavior/behaviour_shell|planning/planner_shell|control/(controller_shell|force_display))\\.hpp",
@@ -133,10 +135,12 @@ const std::vector<Fence> fences = {
     {"yaml-cpp/", {"framework/config/yaml\\.cpp"}},
     // Whoever logs: what runs components, and components in their handlers.
     {"spdlog/",
-     {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp", "tests/.*"}},
+     {"framework/runtime/.*", ".*_component\\.cpp", "components/behavior/behaviour_shell\\.hpp",
+      "components/planning/grid_planner_shell\\.hpp", "tests/.*"}},
     {"CLI/", {"deploy/cli/main\\.cpp", "tests/experiments/.*"}},
     // Quantiles of distributions; its headers are slow to compile.
     {"boost/", {"deploy/lab/statistics\\.cpp"}},
+    {"ompl/", {"components/planning/ompl_.*"}},
     {"png.h", {"framework/map_file/image\\.cpp"}},
     {"emmintrin.h", {"components/mapping/.*_kernel\\..pp"}},
     {"immintrin.h", {"sim/ray_kernel_avx.*\\.cpp"}},

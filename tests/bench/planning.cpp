@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "components/planning/grid_planner.hpp"
+#include "components/planning/ompl_planner.hpp"
 #include "components/planning/string_pulling.hpp"
 #include "framework/map_file/image.hpp"
 #include "framework/map_file/map_file.hpp"
@@ -59,8 +61,6 @@ struct Place {
   grid::CellBox box;
   grid::Occupancy cells;
 };
-
-geometry::Vector2 middle_of(const Cell& cell) { return {cell.x + 0.5, cell.y + 0.5}; }
 
 /// Pairs of free cells that are connected.
 std::vector<Pair> random_pairs(const Costmap& map, std::size_t count) {
@@ -250,43 +250,53 @@ void bench_weighted(bool smoke) {
   }
 }
 
+/// Length and time of one planner's answers, beside those of A* pulled taut.
+struct Answers {
+  std::vector<double> lengths, times;  ///< parts of the shortest on the grid; us
+};
+
 void bench_ompl(bool smoke) {
-  say("\n## OMPL\n\n");
-  if (!bench::ompl_planner("PRMstar")) return say("Built without OMPL (package libompl-dev).\n");
   const double limit = smoke ? 0.01 : 0.1;
-  say("%.0f ms for each of 8 queries, one seed, motions tested exactly, exact solutions only. Length as a part of the "
-      "shortest\nway on the grid; jump points pulled taut beside it.\n\n"
-      "| map | planner | solved | length | mean time |\n|---|---|---|---|---|\n",
+  say("\n## OMPL\n\n%.0f ms for each of 8 queries, as planning/ompl plans: motions tested exactly, exact solutions "
+      "only, "
+      "made shorter in what is\nleft of the time. Length as a part of the shortest way on the grid; canonical A* "
+      "pulled taut "
+      "beside it.\n\n"
+      "| map | planner | solved | length | mean time | beside A* |\n|---|---|---|---|---|---|\n",
       1e3 * limit);
+  if (test::moving_ai_names().empty()) return;
   for (const std::string name : {"arena", "brc202d", "16room_000", "random512-20-0", "Berlin_1_256"}) {
-    if (test::moving_ai_names().empty()) return;
     test::MovingAiMap file = test::moving_ai_map(name);
     const Costmap map = test::bare_costmap(file.cells, file.box);
     const std::vector<Pair> pairs = some_queries(name, smoke ? 1 : 8);
-    GridSearch search;
-    StringPuller string;
-    for (const std::string planner : {"jump points", "PRMstar", "RRTConnect"}) {
-      const auto ompl = planner == "jump points" ? nullptr : bench::ompl_planner(planner);
-      std::vector<double> lengths, times;
+    double of_astar = 0.0;
+    const auto tell = [&](const std::string& planner, const Answers& answers) {
+      const double time = mean(answers.times);
+      if (of_astar == 0.0) of_astar = time;
+      say("| %s | %s | %zu of %zu |", name.c_str(), planner.c_str(), answers.lengths.size(), pairs.size());
+      answers.lengths.empty() ? say(" - |") : say(" %.3f |", mean(answers.lengths));
+      say(" %.2f ms | %.0f |\n", 1e-3 * time, time / of_astar);
+    };
+    const auto ask = [&](planning::MapPlanner& planner) {
+      planner.update(file.cells, file.box);
+      GridSearch search;
+      planning::Plan plan;
+      Answers answers;
       for (const Pair& pair : pairs) {
         search.find(map, pair.start, pair.goal, SearchRule::jump_point);
-        const double shortest = search.cost();
-        std::optional<double> length;
-        times.push_back(time_of([&] {
-          if (ompl) {
-            length = ompl->find(map, pair.start, pair.goal, limit);
-          } else {
-            search.find(map, pair.start, pair.goal, SearchRule::jump_point);
-            const auto& points = string.pull(map, search.path(), middle_of(pair.start), middle_of(pair.goal));
-            length = 0.0;
-            for (std::size_t i = 1; i < points.size(); ++i) *length += (points[i] - points[i - 1]).norm();
-          }
-        }));
-        if (length && shortest > 0.0) lengths.push_back(*length / shortest);
+        const planning::Query query{.start = map.from_cells(middle_of(pair.start)),
+                                    .goal = map.from_cells(middle_of(pair.goal))};
+        answers.times.push_back(time_of([&] { planner.plan(query, plan); }));
+        if (plan.outcome == planning::Outcome::found && search.cost() > 0.0)
+          answers.lengths.push_back(plan.length / (search.cost() * map.resolution()));
       }
-      say("| %s | %s | %zu of %zu |", name.c_str(), planner.c_str(), lengths.size(), pairs.size());
-      lengths.empty() ? say(" - |") : say(" %.3f |", mean(lengths));
-      say(" %.2f ms |\n", 1e-3 * mean(times));
+      return answers;
+    };
+    planning::GridPlanner astar({.costs = map.params(), .search = planning::SearchChoice::canonical});
+    tell("A*", ask(astar));
+    for (const auto algorithm : {planning::OmplAlgorithm::prm_star, planning::OmplAlgorithm::rrt_connect}) {
+      planning::OmplPlanner planner({.costs = map.params(), .algorithm = algorithm, .deadline = limit});
+      tell(planning::ompl_names()[static_cast<std::size_t>(algorithm)], ask(planner));
     }
   }
 }

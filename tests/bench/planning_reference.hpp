@@ -1,11 +1,9 @@
-/// What the grid planner is compared with: textbook searches on the same costmap, and planners of OMPL.
+/// What the grid planner is compared with: textbook searches on the same costmap.
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <queue>
-#include <string>
 #include <vector>
 
 #include "components/planning/costmap.hpp"
@@ -61,16 +59,5 @@ class ThetaStar {
   std::vector<Node> nodes_;
   std::uint32_t age_ = 0;
 };
-
-/// A planner of OMPL on free cells of a costmap, with an exact test of motions.
-class OmplPlanner {
- public:
-  virtual ~OmplPlanner() = default;
-  /// The length in cells of an exact solution within `limit` seconds; nothing without one.
-  virtual std::optional<double> find(const planning::Costmap& map, Cell start, Cell goal, double limit) = 0;
-};
-
-/// "PRMstar" or "RRTConnect"; null if the benchmark was built without OMPL.
-std::unique_ptr<OmplPlanner> ompl_planner(const std::string& name);
 
 }  // namespace kervan::bench

@@ -9,9 +9,7 @@
 #include "framework/test/harness.hpp"
 #include "kervan_msgs/msg/GoalStatus.hpp"
 #include "kervan_msgs/msg/ReplanRequest.hpp"
-#include "nav_msgs/msg/OccupancyGrid.hpp"
-#include "nav_msgs/msg/Path.hpp"
-#include "tests/component/map_fixtures.hpp"
+#include "tests/component/planner_fixtures.hpp"
 
 namespace kervan::test {
 namespace {
@@ -23,40 +21,7 @@ using nav_msgs::msg::OccupancyGrid;
 using nav_msgs::msg::Path;
 namespace fs = std::filesystem;
 
-constexpr int columns = 60, rows = 40;  // of 0.1 m
-
-/// A room of 6 x 4 m without walls, with one across the middle that ends 1 m below its top.
-std::vector<std::int8_t> room() {
-  std::vector<std::int8_t> cells(columns * rows, 0);
-  for (int y = 0; y < 30; ++y) cells[static_cast<std::size_t>(y * columns + 30)] = 100;
-  return cells;
-}
-
-OccupancyGrid room_message() {
-  OccupancyGrid map;
-  map.header.frame_id = "map";
-  map.info.resolution = 0.1f;
-  map.info.width = columns;
-  map.info.height = rows;
-  map.info.origin = geometry::to_message(geometry::Pose2{});
-  map.data = room();
-  return map;
-}
-
 ValueMap small_robot() { return {{"radius", 0.2}, {"clearance", 0.2}}; }
-
-std::vector<geometry::Vector2> points_of(const Path& path) {
-  std::vector<geometry::Vector2> points;
-  for (const auto& pose : path.poses) points.push_back(geometry::position_of(pose.pose));
-  return points;
-}
-
-/// The answer to one goal, which may have to wait for its turn after another.
-const Path* ask(Harness& harness, double x, double y) {
-  harness.feed("goal", pose_at(x, y));
-  harness.advance(300ms);
-  return harness.latest<Path>("route");
-}
 
 std::string refusal_of(const ValueMap& parameters) {
   try {
@@ -146,7 +111,7 @@ TEST(AstarGridComponent, BeginsWithTheMapOfAFile) {
   const fs::path folder = fs::temp_directory_path() / ("kervan_astar_grid_" + std::to_string(getpid()));
   fs::create_directories(folder);
   const std::string file = (folder / "room.yaml").string();
-  map_file::save({{}, 0.1, columns, rows, room()}, file, map_file::Mode::trinary);
+  map_file::save({{}, 0.1, room_columns, room_rows, room()}, file, map_file::Mode::trinary);
   ValueMap params = small_robot();
   params["map"] = file;
   {
@@ -170,7 +135,7 @@ TEST(AstarGridComponent, SaysWhyThereIsNoRouteAndPublishesAnEmptyOne) {
   params["tolerance"] = 0.0;
   Harness harness("planning/astar_grid", params);
   OccupancyGrid map = room_message();
-  for (int y = 30; y < rows; ++y) map.data[static_cast<std::size_t>(y * columns + 30)] = 100;
+  for (int y = 30; y < room_rows; ++y) map.data[static_cast<std::size_t>(y * room_columns + 30)] = 100;
   harness.feed("map", map);
   harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
   harness.advance(10ms);
@@ -273,7 +238,7 @@ void drive(Harness& harness, double x0, double x1, double y, Duration time) {
 
 OccupancyGrid with_wall_closed() {
   OccupancyGrid map = room_message();
-  for (int y = 30; y < rows; ++y) map.data[static_cast<std::size_t>(y * columns + 30)] = 100;
+  for (int y = 30; y < room_rows; ++y) map.data[static_cast<std::size_t>(y * room_columns + 30)] = 100;
   return map;
 }
 

@@ -108,7 +108,7 @@ TEST_F(Program, RefusesInOneLineAndWritesNothing) {
       "run lba",
       "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, "
       "10_wall_follow, 11_map_room, 12_map_two_robots, 13_map_drifting, 20_vff_rods, 21_gnron, 22_vfh_rescue, "
-      "22_vfh_weights, 23_explore, 23_explore_four_robots, 23_explore_two_robots, 24_barn, lab");
+      "22_vfh_weights, 23_explore, 23_explore_four_robots, 23_explore_two_robots, 24_barn, 25_ompl, lab");
   expect_refused("run other.yaml", "other.yaml: there is no such file");
   expect_refused("check lab --host base", "--host base: lab has no such host; it has: none");
   expect_refused("run lab --place left=wrold",

@@ -134,6 +134,44 @@ TEST(WallClockOwnThread, AComponentThatBlocksRunsInAThreadOfItsOwn) {
   EXPECT_NE(Blocking::thread, Boss::thread);
 }
 
+/// Works on a sample until the next one is there.
+class Interruptible final : public kervan::Component {
+  kervan::Input<Time> in_{this, "in", kervan::qos::state, &Interruptible::on_message, "Work."};
+  kervan::Output<Time> out_{this, "out", kervan::qos::state, "Done."};
+  void on_message(const Time& message, kervan::Time) {
+    EXPECT_FALSE(lockstep());
+    if (interrupted) return;
+    const auto watchdog = std::chrono::steady_clock::now() + 50s;
+    while (!in_.waiting() && std::chrono::steady_clock::now() < watchdog) std::this_thread::yield();
+    interrupted = in_.waiting();
+    out_.publish(message);
+  }
+
+ public:
+  Interruptible() { wants_own_thread(); }
+  static inline std::atomic<bool> interrupted = false;
+};
+
+TEST(WallClockOwnThread, AHandlerSeesThatSomethingNewerHasCome) {
+  kervan::ComponentRegistry registry({});
+  const auto interruptible = kervan::test::define<Interruptible>("test/interruptible");
+  const auto boss = kervan::test::define<Boss>("test/boss");
+  registry.add(interruptible);
+  registry.add(boss);
+  kervan::runtime::ContainerSpec spec;
+  spec.domain = {.id = 206, .network = false};
+  spec.log_to_console = false;
+  const kervan::QosProfile state = *kervan::builtin_profile("state");
+  spec.components.push_back({.name = "interruptible",
+                             .type = interruptible.type,
+                             .ports = {{"in", "/work", state}, {"out", "/done", state}}});
+  spec.components.push_back(
+      {.name = "boss", .type = boss.type, .ports = {{"work", "/work", state}, {"done", "/done", state}}});
+  kervan::runtime::Container container(spec, registry);
+  EXPECT_EQ(container.run({.limit = 60s}).end, kervan::runtime::RunEnd::finished);
+  EXPECT_TRUE(Interruptible::interrupted);
+}
+
 /// Publishes far more than its reader's inbox holds, from within one handler.
 class Flood final : public kervan::Component {
   kervan::Output<Time> out_{this, "out", kervan::qos::event, "Many."};
