@@ -51,12 +51,13 @@ const char* to_text(ResponseKind kind) {
 
 std::string number(double value) { return lab::to_text(Value(value)); }
 
+bool shows_zero(std::string_view number) { return number.find_first_of("123456789") == std::string_view::npos; }
+
 std::string fixed(double value, int digits) {
   char text[64];
   std::snprintf(text, sizeof text, "%.*f", digits, value);
   // Nothing is gained by "-0.00".
-  const bool zero = std::string_view(text).find_first_of("123456789") == std::string_view::npos;
-  return zero && text[0] == '-' ? text + 1 : text;
+  return text[0] == '-' && shows_zero(text) ? text + 1 : text;
 }
 
 /// Four significant digits, without an exponent where it can be.
@@ -118,7 +119,10 @@ std::string table_by_columns(const Results& results, const std::string& name) {
 std::string estimate_text(const Estimate& estimate) {
   const double half = (estimate.high - estimate.low) / 2.0;
   if (!(half > 0.0)) return four_digits(estimate.value);
-  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9);
+  int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(half))), 0, 9);
+  // An interval that leaves out 0 by little must not look as if it ended there.
+  const auto looks_zero = [&](double end) { return end != 0.0 && shows_zero(fixed(end, digits)); };
+  for (int more = 0; more < 2 && (looks_zero(estimate.low) || looks_zero(estimate.high)); ++more) ++digits;
   return fixed(estimate.value, digits) + " [" + fixed(estimate.low, digits) + ", " + fixed(estimate.high, digits) + "]";
 }
 

@@ -144,6 +144,7 @@ TEST(Texts, HaveAsManyDigitsAsTheIntervalIsWorth) {
   EXPECT_EQ(estimate_text({0.123456, 0.123456, 0.123456, 1}), "0.1235");
   EXPECT_EQ(estimate_text({49.0, 49.0, 49.0, 5}), "49");
   EXPECT_EQ(estimate_text({-0.001, -0.5, 0.5, 5}), "0.00 [-0.50, 0.50]");
+  EXPECT_EQ(estimate_text({-10.3, -20.4, -0.2, 3}), "-10.3 [-20.4, -0.2]") << "it leaves out 0";
 }
 
 }  // namespace
