@@ -5,6 +5,7 @@
 
 #include "deploy/cli/print_json.hpp"
 #include "deploy/cli/verbs.hpp"
+#include "deploy/composition/links.hpp"
 #include "framework/component/error.hpp"
 #include "framework/config/node.hpp"
 
@@ -12,12 +13,12 @@ using namespace kervan;
 
 namespace {
 
-const std::vector<std::string> verbs = {"run", "sweep", "check", "describe", "draw", "container", "systemd"};
+const std::vector<std::string> verbs = {"run", "sweep", "check", "describe", "draw", "container", "systemd", "link"};
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
-/// The options that run and check share.
-void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
+/// The options that run and check share; returns --host.
+CLI::Option* add_composition(CLI::App& verb, cli::CompositionRequest& request) {
   verb.add_option("composition", request.composition, "name of a shipped composition, or a file")
       ->type_name("NAME|FILE")
       ->required();
@@ -38,10 +39,10 @@ void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
       ->check(not_empty)
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb.add_option("--host", request.host, "which of the composition's hosts this is")
+  verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
+  return verb.add_option("--host", request.host, "which of the composition's hosts this is")
       ->type_name("NAME")
       ->check(not_empty);
-  verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
 }
 
 /// `kervan container`: one subcommand for each thing that can be asked.
@@ -114,6 +115,49 @@ void add_container(CLI::App& verb, cli::ContainerAsk& ask) {
   of_component(add("snapshot", "All parameters of a container's components, or of one."), false);
 }
 
+/// What stands for the value of an option in the help.
+std::string example_of(const ParameterInfo& info) {
+  if (info.kind == ParameterKind::duration) return "TIME";
+  return info.unit == "%" ? "SHARE" : info.unit == "B" ? "SIZE" : info.unit == "bit/s" ? "RATE" : "N";
+}
+
+/// `kervan link`: an option for each setting of a link, by the name that a composition uses, with hyphens.
+void add_link(CLI::App& verb, cli::LinkRequest& link) {
+  const char* const where = "a process in it, a path such as /proc/1234/ns/net, or a name of ip netns";
+  verb.add_option("a", link.a, std::string("network namespace of one end: ") + where)->type_name("A")->required();
+  verb.add_option("b", link.b, "that of the other end")->type_name("B")->required();
+  verb.add_option("--profile", link.profile, "ethernet, wifi or lossy; the other options change it")
+      ->check(not_empty)
+      ->type_name("NAME");
+  for (const ParameterInfo& info : schema_of<composition::LinkSettings>()) {
+    std::string option = "--" + info.name;
+    std::ranges::replace(option, '_', '-');
+    const auto give = [&link, name = info.name](const std::string& text) { link.settings[name] = text; };
+    if (info.kind == ParameterKind::boolean)
+      verb.add_flag_callback(
+          option, [give] { give("true"); }, info.help);
+    else
+      verb.add_option_function<std::string>(option, give, info.help)->check(not_empty)->type_name(example_of(info));
+  }
+  verb.add_option("--down", link.down, "time in which nothing passes, e.g. 10s..15s; may be repeated")
+      ->type_name("FROM..UNTIL")
+      ->check(not_empty)
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb.add_option("--interface", link.interface, "name of the interface that each end gets")
+      ->capture_default_str()
+      ->check(not_empty)
+      ->type_name("NAME");
+  verb.add_option("--address-a", link.address_a, "IPv4 address of A's")->capture_default_str()->type_name("IP");
+  verb.add_option("--address-b", link.address_b, "of B's, in the same network of 24 bits")
+      ->capture_default_str()
+      ->type_name("IP");
+  verb.add_option("--seed", link.seed, "of everything random")->capture_default_str()->type_name("N");
+  verb.add_option("--for", link.time_limit, "end after this time; else at Ctrl-C")->check(not_empty)->type_name("TIME");
+  verb.add_flag("--netem", link.netem, "have the kernel do it, if it has netem; its losses follow no seed");
+  verb.add_flag("--json", link.json, "print the counters as one JSON object, on the last line");
+}
+
 /// The reason on stderr, and with --json also as an object on stdout, so that a script never has to read prose.
 int refuse(const ConfigError& error, bool json) {
   std::cerr << error.what() << std::endl;
@@ -137,6 +181,8 @@ std::string reason(const CLI::ParseError& error, const CLI::App& app) {
                ? "what to ask is missing: list, state, load, unload, activate, deactivate, set, call or snapshot"
                : error.what();
   if (app.got_subcommand("sweep")) return "a sweep is missing; name a shipped one, or a file";
+  if (app.got_subcommand("link"))
+    return "two network namespaces are missing; each is a process in it, a path, or a name that ip netns knows";
   if (app.got_subcommand("draw")) return "a world is missing; name a shipped one, such as lab, or a file";
   return "a composition is missing; name a shipped one, such as lab, or a file";
 }
@@ -150,7 +196,7 @@ int dispatch(int argc, char** argv) {
 
   cli::RunRequest run;
   CLI::App* run_verb = app.add_subcommand("run", "Run a composition until its mission ends.");
-  add_composition(*run_verb, run);
+  CLI::Option* host = add_composition(*run_verb, run);
   run_verb
       ->add_option(
           "--for", run.time_limit,
@@ -165,6 +211,10 @@ int dispatch(int argc, char** argv) {
                    "show in map.svg what each robot's sensors saw at the start and every so often, e.g. 5s")
       ->check(not_empty)
       ->type_name("TIME");
+  run_verb
+      ->add_flag("--emulate-hosts", run.emulate_hosts,
+                 "play all hosts of the composition here, each with a network of its own, joined as 'links' says")
+      ->excludes(host);
   CLI::Option* runs = run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
                           ->capture_default_str()
                           ->check(not_empty)
@@ -226,6 +276,10 @@ int dispatch(int argc, char** argv) {
   CLI::App* container_verb = app.add_subcommand("container", "Look at a container that runs, or change what it hosts.");
   add_container(*container_verb, ask);
 
+  cli::LinkRequest link;
+  CLI::App* link_verb = app.add_subcommand("link", "Join two network namespaces by an emulated link.");
+  add_link(*link_verb, link);
+
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool json = std::find(arguments.begin(), arguments.end(), "--json") != arguments.end();
   if (arguments.empty())
@@ -249,6 +303,7 @@ int dispatch(int argc, char** argv) {
     if (*draw_verb) return cli::draw(draw);
     if (*systemd_verb) return cli::systemd(systemd);
     if (*container_verb) return cli::container(ask);
+    if (*link_verb) return cli::link(link);
     return cli::describe(describe);
   } catch (const ConfigError& error) {
     return refuse(error, json);

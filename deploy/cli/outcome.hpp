@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "deploy/container/report.hpp"
+#include "deploy/lab/link/counters_json.hpp"
 #include "deploy/supervisor/supervisor.hpp"
 
 namespace kervan::cli {
@@ -39,6 +40,7 @@ struct RunOutcome {
   double wall_s = 0.0;
   int signal = 0;  ///< SIGINT or SIGTERM, if one ended the run
   std::vector<supervisor::ContainerRecord> containers;
+  std::vector<link::LinkReport> links;  ///< of emulated hosts
 };
 
 /// The same for a run in this process and for one in several. `run.unusable` must have been dealt with before.

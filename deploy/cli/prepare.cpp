@@ -20,6 +20,7 @@ composition::ResolvedComposition prepare(const CompositionRequest& request, Comp
       composition::load(file, {.arguments = request.arguments,
                                .place = request.place,
                                .host = request.host,
+                               .emulate_hosts = request.emulate_hosts,
                                .settings = composition::settings_from_command_line(request.settings)});
   if (adjust) adjust(loaded);
   return composition::resolve(std::move(loaded), components, options);

@@ -168,6 +168,7 @@ ordered_json summary(const RunOutcome& outcome) {
                          {"simulated_s", rounded(outcome.simulated_s)},
                          {"wall_s", rounded(outcome.wall_s)},
                          {"containers", containers}};
+  for (const link::LinkReport& link : outcome.links) object["links"].push_back(to_json(link));
   if (outcome.result != RunResult::success) object["reason"] = outcome.reason;
   if (!outcome.failures.empty()) object["failures"] = outcome.failures;
   if (outcome.signal != 0) object["interrupted"] = true;
@@ -287,6 +288,7 @@ int run(const RunRequest& request) {
   std::ostream& out = request.json ? std::cerr : std::cout;
   print_result(out, outcome, options.run_folder);
   if (!here) print_containers(out, outcome);
+  if (!outcome.links.empty()) print_table(out, link::rows_of(outcome.links), "  ");
   if (request.json) print_json(object);
   return exit_code(outcome);
 }

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <memory>
 
 #include "deploy/composition/hosts.hpp"
 #include "deploy/container/mission_listener.hpp"
 #include "deploy/container/specification.hpp"
+#include "deploy/lab/link/emulated_network.hpp"
 #include "framework/runtime/container.hpp"
 
 namespace kervan::cli {
@@ -43,9 +45,19 @@ supervisor::SupervisedRun run_here(const runtime::ContainerSpec& spec, Component
   return run;
 }
 
+/// The hosts that have containers, as the composition says they are joined.
+std::unique_ptr<link::EmulatedNetwork> emulate(const composition::Composition& composition) {
+  std::vector<link::EmulatedHost> hosts;
+  for (const composition::Host& host : composition.domain.hosts)
+    if (std::ranges::find(composition.containers, host.name, &composition::Container::host) !=
+        composition.containers.end())
+      hosts.push_back({host.name, host.interface, host.address});
+  return std::make_unique<link::EmulatedNetwork>(hosts, composition.links);
+}
+
 supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition& composition,
                                          std::vector<runtime::ContainerSpec> specs, const RunOptions& options,
-                                         const RunEvents& events) {
+                                         const RunEvents& events, link::EmulatedNetwork* network) {
   supervisor::SupervisorConfig config;
   config.program = container_program();
   config.spec_folder = fs::absolute(options.run_folder);
@@ -54,9 +66,15 @@ supervisor::SupervisedRun run_supervised(const composition::ResolvedComposition&
   for (std::size_t i = 0; i < specs.size(); ++i) {
     const composition::Container& container = composition.source.containers[i];
     if (std::ranges::find(here, &container) != here.end())
-      config.containers.push_back({std::move(specs[i]), container.restart});
+      config.containers.push_back(
+          {std::move(specs[i]), container.restart, network ? network->namespace_of(container.host) : -1});
   }
-  supervisor::Supervisor supervisor(std::move(config), {events.say, events.waiting, events.progress});
+  supervisor::SupervisorEvents shown{events.say, events.waiting, events.progress, {}};
+  if (network) {
+    config.trouble = [network] { return network->trouble(); };
+    shown.all_active = [network] { network->begin(); };
+  }
+  supervisor::Supervisor supervisor(std::move(config), std::move(shown));
   return supervisor.run();
 }
 
@@ -82,10 +100,14 @@ RunOutcome run_composition(const composition::ResolvedComposition& composition, 
                                                        .threads = options.threads,
                                                        .log_to_console = options.log_to_console,
                                                        .tag = here ? "" : tag_of(composition)});
-  const supervisor::SupervisedRun run = here ? run_here(specs.front(), registry, options, events)
-                                             : run_supervised(composition, std::move(specs), options, events);
+  const auto network = composition.source.emulate_hosts ? emulate(composition.source) : nullptr;
+  const supervisor::SupervisedRun run =
+      here ? run_here(specs.front(), registry, options, events)
+           : run_supervised(composition, std::move(specs), options, events, network.get());
   if (run.unusable) throw ConfigError({}, run.aborted);
-  return judge(run);
+  RunOutcome outcome = judge(run);
+  if (network) outcome.links = network->end();
+  return outcome;
 }
 
 }  // namespace kervan::cli

@@ -2,6 +2,7 @@
 /// arguments and turns errors into one line and a code.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct CompositionRequest {
   std::vector<std::string> settings;   ///< "component.params.name=value"
   std::vector<std::string> place;      ///< "all", "each" or "container=component,component"
   std::string host;                    ///< which of the composition's hosts this is; empty: not said
+  bool emulate_hosts = false;          ///< this machine plays all of them
   bool json = false;
 };
 
@@ -69,6 +71,20 @@ struct ContainerAsk {
   bool json = false;
 };
 
+/// A link between two network namespaces: `kervan link 1234 1235 --loss "10 %"`.
+struct LinkRequest {
+  std::string a, b;                             ///< a process, a path or a name of `ip netns`
+  std::string profile;                          ///< empty: no effects but those of `settings`
+  std::map<std::string, std::string> settings;  ///< as LinkSettings describes them
+  std::vector<std::string> down;                ///< "10s..15s"
+  std::string interface = "link0";              ///< at both ends
+  std::string address_a = "10.77.0.1", address_b = "10.77.0.2";
+  std::string seed = "1";
+  std::string time_limit;  ///< empty: until it is told to end
+  bool netem = false;
+  bool json = false;
+};
+
 struct DrawRequest {
   std::string world;  ///< a name or a file
   std::string out;    ///< the picture's file; empty: <name>.svg
@@ -86,5 +102,6 @@ int describe(const DescribeRequest& request);
 int draw(const DrawRequest& request);
 int systemd(const SystemdRequest& request);
 int container(const ContainerAsk& ask);
+int link(const LinkRequest& request);
 
 }  // namespace kervan::cli

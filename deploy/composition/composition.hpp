@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "deploy/composition/links.hpp"
 #include "framework/component/parameters.hpp"
 #include "framework/component/time.hpp"
 #include "framework/config/node.hpp"
@@ -33,7 +34,7 @@ struct Host {
 
 struct Domain {
   int id = 0;
-  std::string tag;  ///< only those with the same tag see each other; empty: all without one
+  std::string tag;        ///< only those with the same tag see each other; empty: all without one
   bool multicast = true;  ///< whether the network carries it
   std::vector<Host> hosts;
 };
@@ -100,7 +101,9 @@ struct Composition {
   std::vector<Argument> arguments;
   Clock clock;
   Domain domain;
-  std::string host;  ///< the one that `--host` says this is; empty: not said
+  Links links;                 ///< between the hosts, where they are emulated
+  std::string host;            ///< the one that `--host` says this is; empty: not said
+  bool emulate_hosts = false;  ///< this machine plays all of them, over a network of its own
   std::vector<ProfileEntry> profiles;
   std::vector<TopicEntry> topics;
   std::vector<ComponentEntry> components;  ///< in the file's order, a template's where its instance stands

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cctype>
 #include <map>
+#include <optional>
+#include <set>
 
 #include "deploy/composition/expand.hpp"
 
@@ -17,6 +19,10 @@ using config::Node;
 constexpr int kMostProcesses = 120;
 constexpr int kMostContainers = 100;
 
+/// Where hosts without an address are when they are emulated: 10.77.0.1 and so on.
+constexpr std::uint32_t kEmulatedNetwork = 0x0a4d0000;
+constexpr std::uint32_t kNetmask = 0xffffff00;
+
 bool is_address(const std::string& text) {
   unsigned char binary[sizeof(in6_addr)];
   if (inet_pton(AF_INET, text.c_str(), binary) == 1 || inet_pton(AF_INET6, text.c_str(), binary) == 1) return true;
@@ -24,6 +30,12 @@ bool is_address(const std::string& text) {
   const auto plain = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '.'; };
   return !text.empty() && std::all_of(text.begin(), text.end(), plain) &&
          text.find_first_not_of("0123456789.") != std::string::npos && text.front() != '-' && text.front() != '.';
+}
+
+std::string to_text_of(std::uint32_t address) {
+  const in_addr binary{htonl(address)};
+  char text[INET_ADDRSTRLEN];
+  return inet_ntop(AF_INET, &binary, text, sizeof text);
 }
 
 Host read_host(const Node& node) {
@@ -97,9 +109,49 @@ Domain read_domain(const Node& node) {
   return domain;
 }
 
+std::optional<std::uint32_t> ipv4(const std::string& text) {
+  in_addr binary{};
+  if (inet_pton(AF_INET, text.c_str(), &binary) != 1) return std::nullopt;
+  return ntohl(binary.s_addr);
+}
+
+std::vector<std::string> host_names(const Domain& domain) {
+  std::vector<std::string> names;
+  for (const Host& host : domain.hosts) names.push_back(host.name);
+  return names;
+}
+
+void emulate_hosts(Composition& composition) {
+  const std::string option = "--emulate-hosts";
+  if (used_hosts(composition).size() < 2)
+    throw ConfigError({option, 0, 0}, composition.name +
+                                          " has no containers on two hosts; name hosts under domain.hosts, "
+                                          "and the host of each container");
+  // Names and IPv6 addresses mean nothing in a network that is made for the run.
+  std::set<std::uint32_t> taken;
+  for (Host& host : composition.domain.hosts) {
+    if (!ipv4(host.address)) host.address.clear();
+    if (host.interface == "lo") host.interface.clear();
+    if (const auto address = ipv4(host.address)) taken.insert(*address);
+  }
+  const std::uint32_t network = (taken.empty() ? kEmulatedNetwork : *taken.begin()) & kNetmask;
+  if (!taken.empty() && (*taken.rbegin() & kNetmask) != network)
+    throw ConfigError({option, 0, 0},
+                      to_text_of(*taken.begin()) + " and " + to_text_of(*taken.rbegin()) +
+                          " are not in one network; give hosts addresses that differ in the last number");
+  std::uint32_t next = network;
+  for (Host& host : composition.domain.hosts) {
+    if (host.interface.empty()) host.interface = "emulated";
+    if (!host.address.empty()) continue;
+    do ++next;
+    while (taken.contains(next));
+    host.address = to_text_of(next);
+  }
+  composition.emulate_hosts = true;
+}
+
 void choose_host(Composition& composition, const std::string& name) {
-  std::vector<std::string> known;
-  for (const Host& host : composition.domain.hosts) known.push_back(host.name);
+  const std::vector<std::string> known = host_names(composition.domain);
   if (!name.empty() && find(composition, name) == nullptr)
     throw ConfigError({"--host " + name, 0, 0},
                       composition.name + " has no such host" + config::hint(name, known, "it has"));
@@ -132,13 +184,15 @@ void choose_host(Composition& composition, const std::string& name) {
 std::vector<const Container*> containers_here(const Composition& composition) {
   std::vector<const Container*> here;
   const std::vector<std::string> used = used_hosts(composition);
-  if (composition.host.empty() && used.size() > 1 && !all_here(composition)) {
+  if (composition.host.empty() && !composition.emulate_hosts && used.size() > 1 && !all_here(composition)) {
     const auto elsewhere = std::ranges::find_if(composition.containers, [&](const Container& container) {
       return container.host != composition.containers.front().host;
     });
-    throw ConfigError(elsewhere->location, "the containers are on several hosts; say which one this is, --host " +
-                                               used.front() + " or " + config::joined({used.begin() + 1, used.end()}) +
-                                               ", or take all of them with --place all");
+    throw ConfigError(elsewhere->location,
+                      "the containers are on several hosts; say which one this is, --host " + used.front() + " or " +
+                          config::joined({used.begin() + 1, used.end()}) +
+                          ", take all of them with --place all, or let this machine play them with "
+                          "--emulate-hosts");
   }
   for (const Container& container : composition.containers)
     if (composition.host.empty() || container.host.empty() || container.host == composition.host)

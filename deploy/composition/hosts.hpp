@@ -1,6 +1,8 @@
 /// The hosts of a composition and how their processes find each other.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +12,16 @@ namespace kervan::composition {
 
 /// `domain:` as written.
 Domain read_domain(const config::Node& node);
+
+/// An address that stands as four numbers, in the machine's byte order; nothing if it is none.
+std::optional<std::uint32_t> ipv4(const std::string& text);
+
+/// In the file's order.
+std::vector<std::string> host_names(const Domain& domain);
+
+/// For hosts that this machine plays: each gets an IPv4 address in one network, its own if it has one, and a network
+/// interface of its own. To be called before choose_host(). Throws ConfigError if there are no containers on two hosts.
+void emulate_hosts(Composition& composition);
 
 /// Sets the host that `--host` names (empty: none was named) and checks that what the composition says of hosts can
 /// work. Throws ConfigError for a host that is not in the file, and for containers whose place nobody knows.

@@ -88,7 +88,7 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
                       const LoadOptions& options) {
   if (!root.is_map()) root.fail("a composition is a map that begins with 'kervan: 1'");
   check_version(root);
-  root.only_keys({"kervan", "name", "help", "args", "clock", "domain", "log", "qos", "topics", "templates",
+  root.only_keys({"kervan", "name", "help", "args", "clock", "domain", "links", "log", "qos", "topics", "templates",
                   "components", "containers", "mission"});
   Composition composition;
   composition.file = shown_as;
@@ -110,6 +110,8 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
   if (const auto help = filled("help")) composition.help = help->as_text();
   if (const auto clock = filled("clock")) composition.clock = read_clock(*clock);
   if (const auto domain = filled("domain")) composition.domain = read_domain(*domain);
+  const auto links = filled("links");
+  composition.links = links ? read_links(*links, host_names(composition.domain)) : default_links();
   const auto log = filled("log");
   const std::string log_level = log ? log_level_of(*log) : "info";
   if (const auto qos = filled("qos"))
@@ -130,6 +132,7 @@ Composition load_node(const Node& root, const std::string& shown_as, const fs::p
   const auto containers = filled("containers");
   composition.containers =
       place_components(composition, containers ? &*containers : nullptr, mission ? "mission" : "", options.place);
+  if (options.emulate_hosts) emulate_hosts(composition);
   choose_host(composition, options.host);
   return composition;
 }

@@ -1,6 +1,7 @@
 #include "deploy/supervisor/child_process.hpp"
 
 #include <fcntl.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
@@ -21,11 +22,13 @@ constexpr int kControlDescriptor = 3;  ///< in the child
 [[noreturn]] void fail(const char* what) { throw std::system_error(errno, std::generic_category(), what); }
 
 /// What runs in the child before it becomes the program: nothing that allocates or locks.
-[[noreturn]] void become(const char* program, char* const* arguments, int control, int output, pid_t parent) {
+[[noreturn]] void become(const char* program, char* const* arguments, int control, int output, int network,
+                         pid_t parent) {
   ::setpgid(0, 0);
   // Asked for after the fork, so it holds for this process; and if the parent died in between, nobody will tell.
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (::getppid() != parent) ::_exit(127);
+  if (network >= 0 && ::setns(network, CLONE_NEWNET) != 0) ::_exit(127);
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
@@ -45,30 +48,30 @@ constexpr int kControlDescriptor = 3;  ///< in the child
 
 }  // namespace
 
-ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments) {
+ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments, int network) {
   arguments.insert(arguments.end(), {"--control-fd", std::to_string(kControlDescriptor)});
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC | O_NONBLOCK) != 0) fail("cannot make a pipe");
   control_ = pipe[0];
-  start(program, std::move(arguments), pipe[1], -1);
+  start(program, std::move(arguments), pipe[1], -1, network);
 }
 
 ChildProcess::ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments,
                            const std::filesystem::path& output) {
   const int file = ::open(output.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail(("cannot write " + output.string()).c_str());
-  start(program, std::move(arguments), -1, file);
+  start(program, std::move(arguments), -1, file, -1);
 }
 
 void ChildProcess::start(const std::filesystem::path& program, std::vector<std::string> arguments, int control,
-                         int output) {
+                         int output, int network) {
   arguments.insert(arguments.begin(), program.string());
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   const pid_t parent = ::getpid();
   pid_ = ::fork();
-  if (pid_ == 0) become(arguments.front().c_str(), pointers.data(), control, output, parent);
+  if (pid_ == 0) become(arguments.front().c_str(), pointers.data(), control, output, network, parent);
   const int error = errno;
   if (control >= 0) ::close(control);
   if (output >= 0) ::close(output);

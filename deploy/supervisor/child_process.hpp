@@ -13,9 +13,10 @@ namespace kervan::supervisor {
 class ChildProcess {
  public:
   /// Starts `program` with these arguments and "--control-fd N", N being the end of a pipe for it to write to. Its
-  /// standard input is empty, its standard output goes to our standard error. To be called from the main thread: the
-  /// kernel kills the child when the thread that made it ends. Throws std::system_error.
-  ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments);
+  /// standard input is empty, its standard output goes to our standard error. It runs in the network namespace that
+  /// the descriptor `network` stands for, in ours if that is -1. To be called from the main thread: the kernel kills
+  /// the child when the thread that made it ends. Throws std::system_error.
+  ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments, int network = -1);
   /// The same without a control pipe, for a program that knows of none: what it prints goes to the file `output`, which
   /// is made anew.
   ChildProcess(const std::filesystem::path& program, std::vector<std::string> arguments,
@@ -38,7 +39,8 @@ class ChildProcess {
 
  private:
   /// `control` and `output` are the child's ends, or -1; this closes them.
-  void start(const std::filesystem::path& program, std::vector<std::string> arguments, int control, int output);
+  void start(const std::filesystem::path& program, std::vector<std::string> arguments, int control, int output,
+             int network);
 
   pid_t pid_ = -1;
   int pidfd_ = -1;

@@ -169,6 +169,8 @@ SupervisedRun Supervisor::run() {
       if (container->state == Managed::State::waiting && end_ == End::running && now() >= container->restart_at)
         start(*container);
     check_hangs();
+    if (end_ == End::running && config_.trouble)
+      if (const std::string why = config_.trouble(); !why.empty()) abort(why);
     advance_ending();
     show();
   }
@@ -196,7 +198,7 @@ void Supervisor::start(Managed& container) {
   container.told = 0;
   container.process.reset();
   try {
-    container.process.emplace(config_.program, std::move(arguments));
+    container.process.emplace(config_.program, std::move(arguments), container.plan.network);
   } catch (const std::system_error& error) {
     container.state = Managed::State::stopped;
     abort("the container " + container.name() + " cannot be started: " + error.what());
@@ -268,8 +270,10 @@ void Supervisor::take(Managed& container, container::Message message) {
       say("the container " + container.name() + " is active again, " +
           decimal(std::chrono::duration<double>(now() - container.ended).count(), "%.2f s") + " after its end");
     if (!std::exchange(was_active_, true)) active_since_ = now();
-    were_all_active_ =
-        were_all_active_ || std::ranges::all_of(containers_, [](const auto& one) { return one->ever_active; });
+    if (!were_all_active_ && std::ranges::all_of(containers_, [](const auto& one) { return one->ever_active; })) {
+      were_all_active_ = true;
+      if (events_.all_active) events_.all_active();
+    }
   } else if (const auto* progress = std::get_if<container::Progress>(&message)) {
     container.progress = *progress;
   } else if (auto* crash = std::get_if<Crash>(&message)) {

@@ -21,6 +21,7 @@ namespace kervan::supervisor {
 struct ManagedContainer {
   runtime::ContainerSpec spec;
   composition::Restart restart;
+  int network = -1;  ///< descriptor of the network namespace where it runs; -1: ours
 };
 
 struct SupervisorConfig {
@@ -28,6 +29,7 @@ struct SupervisorConfig {
   std::filesystem::path spec_folder;         ///< gets container-<name>.json
   Duration limit = forever;                  ///< of the run, on the composition's clock
   std::vector<ManagedContainer> containers;  ///< of this host, in the composition's order
+  std::function<std::string()> trouble;      ///< asked again and again: why the run cannot go on; empty: it can
 };
 
 /// What a person may be shown on the way. All are called from run(), and may be empty.
@@ -35,6 +37,7 @@ struct SupervisorEvents {
   std::function<void(const std::string&)> say;      ///< one sentence about a container, for good
   std::function<void(const std::string&)> waiting;  ///< whom the start waits for; about once a second
   std::function<void(Duration)> progress;           ///< the composition's time, about ten times a second
+  std::function<void()> all_active = {};            ///< once, when all containers have become active
 };
 
 /// One row of the table at the end.

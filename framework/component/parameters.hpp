@@ -233,12 +233,18 @@ void validate(const std::vector<ParameterInfo>& schema, const ValueMap& values, 
 /// Throws ParameterError if one of `changes` belongs to a parameter that is not declared live.
 void require_live(const std::vector<ParameterInfo>& schema, const ValueMap& changes);
 
+/// Gives the fields that `values` names new values, which must have passed validate().
+template <class P>
+void set_parameters(P& parameters, const ValueMap& values) {
+  detail::LoadVisitor visitor(values);
+  parameters.describe(visitor);
+}
+
 /// A struct of parameters filled from `values`, which must have passed validate().
 template <class P>
 P load_parameters(const ValueMap& values) {
   P parameters;
-  detail::LoadVisitor visitor(values);
-  parameters.describe(visitor);
+  set_parameters(parameters, values);
   return parameters;
 }
 

@@ -41,6 +41,8 @@ const std::vector<Dimension>& dimensions() {
       {"m2", "an area", {{"m2", 1.0}, {"m^2", 1.0}, {"cm2", 1e-4}}},
       {"B", "a size", {{"B", 1.0}, {"kB", 1e3}, {"MB", 1e6}, {"KiB", 1024.0}, {"MiB", 1048576.0}}},
       {"B/s", "a data rate", {{"B/s", 1.0}, {"kB/s", 1e3}, {"MB/s", 1e6}}},
+      {"bit/s", "a bit rate", {{"bit/s", 1.0}, {"kbit/s", 1e3}, {"Mbit/s", 1e6}, {"Gbit/s", 1e9}}},
+      {"%", "a share", {{"%", 1.0}}},
   };
   return table;
 }

@@ -1,6 +1,6 @@
 // Every file under broken/ holds one mistake. Its first lines say what must be reported, exactly:
 //   #= 40_unknown_parameter.yaml:6:38: control/field has no parameter 'sped'; …
-//   #arg controller=vff        (a command line argument, if the mistake is there; #place and #host likewise)
+//   #arg controller=vff        (a command line argument, if the mistake is there; #place, #host and #emulate likewise)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,6 +29,7 @@ Case read(const fs::path& file) {
     if (line.starts_with("#arg ")) result.options.arguments.push_back(line.substr(5));
     if (line.starts_with("#place ")) result.options.place.push_back(line.substr(7));
     if (line.starts_with("#host ")) result.options.host = line.substr(6);
+    if (line == "#emulate") result.options.emulate_hosts = true;
   }
   return result;
 }

@@ -100,10 +100,11 @@ TEST_F(Program, HelpsWithEveryVerb) {
 }
 
 TEST_F(Program, RefusesInOneLineAndWritesNothing) {
-  expect_refused("", "a command is missing: run, sweep, check, describe, draw, container, systemd; see kervan --help");
   expect_refused(
-      "rnu lab",
-      "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, container, systemd");
+      "", "a command is missing: run, sweep, check, describe, draw, container, systemd, link; see kervan --help");
+  expect_refused("rnu lab",
+                 "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, "
+                 "container, systemd, link");
   expect_refused(
       "run lba",
       "there is no composition 'lba'; did you mean 'lab'? there are: 02_two_robots, 03_ten_robots, "

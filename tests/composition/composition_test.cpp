@@ -382,8 +382,8 @@ void expect_refused(const std::string& yaml, const LoadOptions& options, const s
 
 TEST(Hosts, MustBeKnownBeforeARun) {
   expect_refused(hosts("{hosts: " + two_hosts + "}", on_two_hosts), {},
-                 "c.yaml:4:50: the containers are on several hosts; say which one this is, --host base or robot, or "
-                 "take all of them with --place all");
+                 "c.yaml:4:50: the containers are on several hosts; say which one this is, --host base or robot, "
+                 "take all of them with --place all, or let this machine play them with --emulate-hosts");
   expect_refused(hosts("{hosts: {base: {}, idle: {}}}", "{one: {host: base, components: [a, b, c]}}"), {.host = "idle"},
                  "--host idle: no container of c is on this host; there are some on base");
 }

@@ -30,10 +30,11 @@ std::string own_tag() {
 
 }  // namespace
 
-Supervised::Supervised(const std::string& composition, const std::string& clock, const std::string& arguments) {
-  std::ofstream(folder_.path() / "c.yaml")
-      << "kervan: 1\nname: c\nclock: {mode: " << clock << "}\ndomain: {id: 91, tag: " << own_tag() << "}\n"
-      << composition;
+Supervised::Supervised(const std::string& composition, const std::string& clock, const std::string& arguments,
+                       const std::string& hosts) {
+  std::ofstream(folder_.path() / "c.yaml") << "kervan: 1\nname: c\nclock: {mode: " << clock
+                                           << "}\ndomain: {id: 91, tag: " << own_tag() << ", hosts: " << hosts << "}\n"
+                                           << composition;
   const fs::path errors = folder_.path() / "errors";
   if (::mkfifo(errors.c_str(), 0600) != 0) throw std::runtime_error("cannot make a pipe");
   errors_ = ::open(errors.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);

@@ -17,9 +17,9 @@ namespace kervan::test {
 class Supervised {
  public:
   /// `composition` is the file's text from `components:` on; what stands above it (clock, domain) is given here, with a
-  /// tag of its own for every run. `arguments` follow "kervan run FILE --json".
+  /// tag of its own for every run. `arguments` follow "kervan run FILE --json"; `hosts` is `domain:`'s list of them.
   explicit Supervised(const std::string& composition, const std::string& clock = "wall",
-                      const std::string& arguments = "");
+                      const std::string& arguments = "", const std::string& hosts = "{}");
   ~Supervised();
   Supervised(const Supervised&) = delete;
   Supervised& operator=(const Supervised&) = delete;
@@ -34,6 +34,7 @@ class Supervised {
 
   /// To the program that supervises.
   void signal(int number);
+  pid_t pid() const { return process_->pid(); }
 
   /// Waits until nobody holds the run's standard error any more, that is, every process is gone. Throws if that takes
   /// longer than the patience.

@@ -40,7 +40,7 @@ Host::~Host() {
 }
 
 Command Host::command(const Command& command) const {
-  Command there{"/usr/bin/nsenter", {"--net=/proc/" + std::to_string(holder_) + "/ns/net", "--", command.program}};
+  Command there{"/usr/bin/nsenter", {"--net=" + network(), "--", command.program}};
   there.arguments.insert(there.arguments.end(), command.arguments.begin(), command.arguments.end());
   there.environment = command.environment;
   return there;

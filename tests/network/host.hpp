@@ -32,6 +32,9 @@ class Host {
   /// Lays a cable to `other`: an interface called `name` on both sides, with these addresses and without multicast.
   void connect(Host& other, const std::string& name, const std::string& address, const std::string& address_there);
 
+  /// Where the kernel shows its namespace.
+  std::string network() const { return "/proc/" + std::to_string(holder_) + "/ns/net"; }
+
   /// The command, to be started there.
   Command command(const Command& command) const;
 

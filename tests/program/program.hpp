@@ -46,6 +46,7 @@ class Process {
   Process(const Process&) = delete;
   Process& operator=(const Process&) = delete;
 
+  pid_t pid() const { return pid_; }
   void signal(int number);
   Result wait(std::chrono::seconds longest = std::chrono::seconds(60));
 
