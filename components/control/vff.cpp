@@ -70,13 +70,25 @@ void cut_window(const grid::Grid<grid::Certainty>& cells, const Vector2& robot, 
 }
 
 Vector2 repulsion_of(const CertaintyWindow& window, double f_cr) {
-  using Row = Eigen::Matrix<float, static_cast<int>(window_cells), 1>;
   alignas(16) std::array<float, window_cells> certainties;
   std::transform(window.cells.begin(), window.cells.end(), certainties.begin(),
                  [](std::uint8_t cell) { return static_cast<float>(cell); });
-  const Eigen::Map<const Row, Eigen::Aligned16> c(certainties.data());
-  const Eigen::Map<const Row, Eigen::Aligned16> x(unit_forces.x.data()), y(unit_forces.y.data());
-  return f_cr / (window.resolution * window.resolution) * Vector2(c.dot(x), c.dot(y));
+  // Eight sums side by side: a single one would wait for itself at every cell.
+  constexpr std::size_t lanes = 8;
+  using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
+  using Aligned = Eigen::Map<const Lanes, Eigen::Aligned16>;
+  Lanes x = Lanes::Zero(), y = Lanes::Zero();
+  std::size_t i = 0;
+  for (; i + lanes <= window_cells; i += lanes) {
+    const Aligned c(&certainties[i]);
+    x += c * Aligned(&unit_forces.x[i]);
+    y += c * Aligned(&unit_forces.y[i]);
+  }
+  for (; i < window_cells; ++i) {
+    x[0] += certainties[i] * unit_forces.x[i];
+    y[0] += certainties[i] * unit_forces.y[i];
+  }
+  return f_cr / (window.resolution * window.resolution) * Vector2(x.sum(), y.sum());
 }
 
 Vector2 attraction_of(const Vector2& robot, const Vector2& target, double f_ct) {

@@ -6,11 +6,13 @@
 #include <numbers>
 #include <vector>
 
+#include "components/control/dwa.hpp"
 #include "components/control/nearest_echo.hpp"
 #include "components/control/potential_field.hpp"
 #include "components/control/pursuit.hpp"
 #include "components/control/recovery.hpp"
 #include "components/control/route_follower.hpp"
+#include "components/control/seen_points.hpp"
 #include "components/control/vff.hpp"
 #include "components/control/vfh_openings.hpp"
 #include "components/control/vfh_plus.hpp"
@@ -103,6 +105,19 @@ TEST(ControlSteadyState, VfhPlusAllocatesNothing) {
     VfhPlus law({.remember = 3.0}, {});
     expect_steady([&](int i) { return law.step(robot_at(i), {9.0, 0.0}, room.seen(i)).twist.angular; });
   }
+}
+
+TEST(ControlSteadyState, DwaAllocatesNothing) {
+  const Room room(721);
+  SeenPoints seen({});
+  DynamicWindow window({});
+  Time now{};
+  expect_steady([&](int i) {
+    now += 50ms;
+    const PlacedScan scan = room.seen(i);
+    seen.look(scan.laser, scan.scan, now);
+    return window.step(robot_at(i), {9.0, 0.0}, seen.points()).twist.angular;
+  });
 }
 
 TEST(ControlSteadyState, FollowingARouteAllocatesNothing) {

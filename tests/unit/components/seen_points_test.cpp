@@ -9,8 +9,6 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/unit/allocations.hpp"
-
 namespace kervan::control {
 namespace {
 
@@ -136,19 +134,6 @@ TEST(SeenPoints, EchoesWithoutAScanStayUntilTheyAreForgotten) {
   EXPECT_TRUE(has_point_at(seen, {1.0, -0.5}));
   seen.forget();
   EXPECT_TRUE(seen.points().empty());
-}
-
-TEST(SeenPoints, LookingAllocatesNothing) {
-  SeenPoints seen({});
-  Sweep sweep(1.0f);
-  const auto look_around = [&](int from) {
-    for (int i = from; i < from + 20; ++i) seen.look({0.02 * i, 0.0, 0.3 * i}, sweep.scan(), at(i * 50ms));
-  };
-  look_around(0);
-  look_around(20);
-  const std::size_t before = test::allocations();
-  look_around(40);
-  EXPECT_EQ(test::allocations() - before, 0u);
 }
 
 }  // namespace
