@@ -1,7 +1,9 @@
 #include "components/control/vff.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstring>
 
 namespace kervan::control {
 namespace {
@@ -10,27 +12,47 @@ using geometry::Vector2;
 
 constexpr int middle = window_side / 2;
 
-/// What a cell of certainty 1 pushes with at Fcr = 1 and cells of 1 m.
-struct UnitForces {
-  alignas(16) std::array<float, window_cells> x{};
-  alignas(16) std::array<float, window_cells> y{};
-};
+// Sixteen cells are a word of four times four bytes: byte k of all four at once, for each k.
+using Cells [[gnu::vector_size(16)]] = std::int32_t;
+using Lanes [[gnu::vector_size(16)]] = float;
+constexpr std::size_t cells_at_once = 16;
+constexpr std::size_t blocks = window_cells / cells_at_once;
+static_assert(window_cells == blocks * cells_at_once + 1, "the last cell is added by itself");
+static_assert(std::endian::native == std::endian::little, "byte k of a word is the cell k places on");
 
-UnitForces made_unit_forces() {
-  UnitForces forces;
-  for (int row = 0; row < window_side; ++row)
-    for (int column = 0; column < window_side; ++column) {
-      const Vector2 away(middle - column, middle - row);
-      const double d = away.norm();
-      if (d == 0.0) continue;
-      const auto i = static_cast<std::size_t>(row * window_side + column);
-      forces.x[i] = static_cast<float>(away.x() / (d * d * d));
-      forces.y[i] = static_cast<float>(away.y() / (d * d * d));
-    }
-  return forces;
+/// What a cell of certainty 1 pushes with at Fcr = 1 and cells of 1 m.
+Vector2 unit_force(std::size_t cell) {
+  const auto row = static_cast<int>(cell) / window_side, column = static_cast<int>(cell) % window_side;
+  const Vector2 away(middle - column, middle - row);
+  const double d = away.norm();
+  return d == 0.0 ? Vector2(Vector2::Zero()) : Vector2(away / (d * d * d));
 }
 
-const UnitForces unit_forces = made_unit_forces();
+/// Of the byte k of block b: those of its four cells.
+struct UnitForces {
+  Lanes x, y;
+};
+using UnitForceTable = std::array<std::array<UnitForces, 4>, blocks>;
+
+UnitForceTable made_unit_forces() {
+  UnitForceTable table;
+  for (std::size_t block = 0; block < blocks; ++block)
+    for (std::size_t byte = 0; byte < 4; ++byte)
+      for (std::size_t lane = 0; lane < 4; ++lane) {
+        const Vector2 force = unit_force(block * cells_at_once + 4 * lane + byte);
+        table[block][byte].x[lane] = static_cast<float>(force.x());
+        table[block][byte].y[lane] = static_cast<float>(force.y());
+      }
+  return table;
+}
+
+const UnitForceTable unit_forces = made_unit_forces();
+const Vector2 last_unit_force = unit_force(window_cells - 1);
+
+double sum_of(const std::array<Lanes, 4>& lanes) {
+  const Lanes sum = (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+  return static_cast<double>((sum[0] + sum[1]) + (sum[2] + sum[3]));
+}
 
 /// A bit that no certainty has shows in the union of all.
 std::uint8_t union_of(const std::array<std::uint8_t, window_cells>& cells) {
@@ -70,25 +92,19 @@ void cut_window(const grid::Grid<grid::Certainty>& cells, const Vector2& robot, 
 }
 
 Vector2 repulsion_of(const CertaintyWindow& window, double f_cr) {
-  alignas(16) std::array<float, window_cells> certainties;
-  std::transform(window.cells.begin(), window.cells.end(), certainties.begin(),
-                 [](std::uint8_t cell) { return static_cast<float>(cell); });
-  // Eight sums side by side: a single one would wait for itself at every cell.
-  constexpr std::size_t lanes = 8;
-  using Lanes = Eigen::Array<float, static_cast<int>(lanes), 1>;
-  using Aligned = Eigen::Map<const Lanes, Eigen::Aligned16>;
-  Lanes x = Lanes::Zero(), y = Lanes::Zero();
-  std::size_t i = 0;
-  for (; i + lanes <= window_cells; i += lanes) {
-    const Aligned c(&certainties[i]);
-    x += c * Aligned(&unit_forces.x[i]);
-    y += c * Aligned(&unit_forces.y[i]);
+  // Four sums side by side: a single one would wait for itself at every cell.
+  std::array<Lanes, 4> x{}, y{};
+  for (std::size_t block = 0; block < blocks; ++block) {
+    Cells cells;
+    std::memcpy(&cells, &window.cells[block * cells_at_once], sizeof cells);
+    for (std::size_t byte = 0; byte < 4; ++byte) {
+      const Lanes certainty = __builtin_convertvector((cells >> static_cast<int>(8 * byte)) & 0xff, Lanes);
+      x[byte] += certainty * unit_forces[block][byte].x;
+      y[byte] += certainty * unit_forces[block][byte].y;
+    }
   }
-  for (; i < window_cells; ++i) {
-    x[0] += certainties[i] * unit_forces.x[i];
-    y[0] += certainties[i] * unit_forces.y[i];
-  }
-  return f_cr / (window.resolution * window.resolution) * Vector2(x.sum(), y.sum());
+  const Vector2 sum = Vector2(sum_of(x), sum_of(y)) + static_cast<double>(window.cells.back()) * last_unit_force;
+  return f_cr / (window.resolution * window.resolution) * sum;
 }
 
 Vector2 attraction_of(const Vector2& robot, const Vector2& target, double f_ct) {
