@@ -1,9 +1,12 @@
 #include "components/planning/ompl_budget.hpp"
 
+#include <algorithm>
+
 namespace kervan::planning {
 namespace {
 
 constexpr std::uint64_t between_looks = 200;  // steps: about 10 us
+constexpr auto grace_steps = static_cast<std::uint64_t>(OmplBudget::grace * OmplBudget::steps_per_second);
 
 std::chrono::nanoseconds nanoseconds_of(double seconds) {
   return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * seconds));
@@ -23,7 +26,7 @@ OmplBudget OmplBudget::of_seconds(double seconds) {
 OmplBudget OmplBudget::of_steps(std::uint64_t steps) {
   OmplBudget budget;
   budget.most_steps_ = steps;
-  budget.last_steps_ = steps + static_cast<std::uint64_t>(grace * steps_per_second);
+  budget.last_steps_ = steps + grace_steps;
   budget.allow(1.0);
   return budget;
 }
@@ -36,6 +39,7 @@ void OmplBudget::allow(double share) {
 
 void OmplBudget::look() {
   look_at_ = steps_ + between_looks;
+  if (cancelled_ && !was_cancelled_ && cancelled_()) cancel();
   bool spent = false;
   if (most_steps_ > 0) {
     over_ = steps_ >= enough_steps_;
@@ -45,9 +49,15 @@ void OmplBudget::look() {
     over_ = now >= enough_;
     spent = now >= last_;
   }
-  if (cancelled_ && !was_cancelled_) was_cancelled_ = cancelled_();
   over_ = over_ || was_cancelled_;
-  if ((spent || was_cancelled_) && !settled_) throw Spent{};
+  if (spent && !settled_) throw Spent{};
+}
+
+/// The planner may end by itself, as it does at the end of its budget: most do at once, and then lose no memory.
+void OmplBudget::cancel() {
+  was_cancelled_ = true;
+  last_steps_ = std::min(last_steps_, steps_ + grace_steps);
+  last_ = std::min(last_, Clock::now() + nanoseconds_of(grace));
 }
 
 }  // namespace kervan::planning

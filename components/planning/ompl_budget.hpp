@@ -24,7 +24,7 @@ class OmplBudget {
   static OmplBudget of_seconds(double seconds);
   static OmplBudget of_steps(std::uint64_t steps);
 
-  /// Asked every few steps; true: nobody needs the result any more.
+  /// Asked every few steps; true: nobody needs the result any more, and the budget is over.
   void set_cancelled(std::function<bool()> cancelled) { cancelled_ = std::move(cancelled); }
 
   /// From now on over() is true when this share of the whole budget, 0 .. 1, is spent.
@@ -52,6 +52,7 @@ class OmplBudget {
 
   OmplBudget() = default;
   void look();
+  void cancel();
 
   std::function<bool()> cancelled_;
   double seconds_ = 0.0;          // 0: counts steps

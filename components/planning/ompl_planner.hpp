@@ -68,7 +68,7 @@ class OmplPlanner final : public MapPlanner {
  public:
   explicit OmplPlanner(const OmplParams& params);
 
-  /// Asked often while a plan is made, in the same thread; true: it ends at once, as Outcome::timeout.
+  /// Asked often while a plan is made, in the same thread; true: it ends within 10 ms, as Outcome::timeout.
   void set_cancelled(std::function<bool()> cancelled) { cancelled_ = std::move(cancelled); }
 
   void set_deadline(double seconds) { params_.deadline = seconds; }
