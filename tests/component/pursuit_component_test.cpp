@@ -58,5 +58,22 @@ TEST(PursuitComponent, StandsStillAtItsWaypointUntilTheNextComes) {
   EXPECT_EQ(drive.command().linear.x, 0.0) << "its last word";
 }
 
+TEST(PursuitComponent, TurnsToATargetThatTeleportsInTheNextStep) {
+  PursuitDrive drive;
+  drive.harness.feed("waypoint", pose_at(3.0, 0.0));
+  drive.feed({});
+  EXPECT_EQ(drive.command().angular.z, 0.0);
+  drive.harness.feed("waypoint", pose_at(-1000.0, 1.0));
+  drive.feed({});
+  EXPECT_GT(drive.command().angular.z, 0.0);
+  EXPECT_LE(drive.command().linear.x, 0.6);
+  EXPECT_GE(drive.command().linear.x, 0.0);
+  drive.harness.feed("waypoint", pose_at(0.0, 0.0));
+  drive.feed({});
+  EXPECT_EQ(drive.command().linear.x, 0.0) << "it is there";
+  EXPECT_EQ(drive.command().angular.z, 0.0);
+  EXPECT_EQ(drive.harness.state(), ComponentState::active);
+}
+
 }  // namespace
 }  // namespace kervan::test
