@@ -1,7 +1,9 @@
 #include <spdlog/spdlog.h>
 
 #include <cmath>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "components/control/recovery.hpp"
 #include "framework/geometry/messages.hpp"
@@ -12,6 +14,7 @@
 #include "kervan_msgs/msg/ReplanRequest.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
 #include "nav_msgs/msg/Odometry.hpp"
+#include "nav_msgs/msg/Path.hpp"
 #include "sensor_msgs/msg/LaserScan.hpp"
 #include "std_msgs/msg/Header.hpp"
 
@@ -32,6 +35,11 @@ struct RecoveryComponentParams {
     v(r.hull.front, "front", {.unit = "m", .min = 0.0, .max = 5.0, .help = "From base_link to the nose."});
     v(r.hull.rear, "rear", {.unit = "m", .min = 0.0, .max = 5.0, .help = "From base_link to the tail."});
     v(r.hull.half_width, "half_width", {.unit = "m", .min = 0.0, .max = 5.0, .help = "From base_link to a side."});
+    v(r.hull.turning, "turning_radius",
+      {.unit = "m",
+       .min = 0.0,
+       .max = 5.0,
+       .help = "Of the circle that the robot sweeps when it turns on the spot; 0: that of its corners."});
     v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
     v(r.at_target, "at_target",
       {.unit = "m",
@@ -57,10 +65,12 @@ struct RecoveryComponentParams {
        .live = true});
     v(r.speed, "speed", {.unit = "m/s", .min = 0.01, .max = 2.0, .help = "Of manoeuvres.", .live = true});
     v(r.turn_rate, "turn_rate", {.unit = "rad/s", .min = 0.01, .max = 5.0, .help = "Of manoeuvres.", .live = true});
-    v(r.back, "back", {.unit = "m", .min = 0.0, .max = 5.0, .help = "Farthest it backs up.", .live = true});
+    v(r.back, "back",
+      {.unit = "m", .min = 0.0, .max = 5.0, .help = "Farthest it backs up or pulls ahead.", .live = true});
     v(r.margin, "margin",
       {.unit = "m", .min = 0.0, .max = 1.0, .help = "No manoeuvre comes nearer to an obstacle.", .live = true});
-    v(r.manoeuvre, "manoeuvre", {.min = 0.1, .max = 60.0, .help = "Longest turn, longest backing up.", .live = true});
+    v(r.manoeuvre, "manoeuvre",
+      {.min = 0.1, .max = 60.0, .help = "Longest turn, backing up or pulling ahead.", .live = true});
     v(r.following, "following", {.min = 0.1, .max = 600.0, .help = "Longest along a wall.", .live = true});
     v(r.trial, "trial", {.min = 0.0, .max = 60.0, .help = "The controller's time after each rung.", .live = true});
     v(r.most_rungs, "most_rungs",
@@ -79,15 +89,18 @@ class RecoveryComponent final : public Component {
   Input<sensor_msgs::msg::LaserScan> scan_{this, "scan", qos::sensor.max_age(500ms).optional(),
                                            "Room around the robot."};
   Input<kervan_msgs::msg::SonarArray> sonar_{this, "sonar", qos::sensor.max_age(500ms).optional(),
-                                             "Room around the robot."};
+                                             &RecoveryComponent::on_sonar, "Room around the robot."};
   Input<kervan_msgs::msg::GoalStatus> status_{this, "goal_status", qos::latched.optional(),
                                               &RecoveryComponent::on_status,
                                               "With another goal everything counts anew."};
+  Input<nav_msgs::msg::Path> route_{this, "route", qos::latched.optional(),
+                                    "An empty one: there is no way to the goal for the time being."};
   Output<geometry_msgs::msg::TwistStamped> cmd_vel_{this, "cmd_vel_raw", qos::command, "Speed wanted of base_link."};
   Output<kervan_msgs::msg::ReplanRequest> replan_{this, "replan", qos::event,
                                                   "A new plan is wanted, or none any more."};
   Output<std_msgs::msg::Header> forget_{this, "forget", qos::event, "What was seen of obstacles may be wrong."};
   Timer tick_{this, params_.period, &RecoveryComponent::on_tick};
+  std::vector<kervan_msgs::msg::SonarReading> heard_;  ///< by each sonar at last
   std::string goal_;
   Time activated_{};
 
@@ -104,6 +117,13 @@ class RecoveryComponent final : public Component {
     if (!recovery_.manoeuvre()) cmd_vel_.publish(wanted);
   }
 
+  /// Sonars take turns: one whose turn it was not has NaN.
+  void on_sonar(const kervan_msgs::msg::SonarArray& sonar, Time) {
+    if (heard_.size() != sonar.readings.size()) heard_.assign(sonar.readings.begin(), sonar.readings.end());
+    for (std::size_t i = 0; i < heard_.size(); ++i)
+      if (!std::isnan(sonar.readings[i].range)) heard_[i] = sonar.readings[i];
+  }
+
   Room room() const {
     RoomFinder finder(params_.recovery.hull);
     if (const auto* scan = scan_.latest(); scan && geometry::possible(geometry::scan_of(*scan))) {
@@ -117,7 +137,7 @@ class RecoveryComponent final : public Component {
       }
     }
     if (const auto* sonar = sonar_.latest())
-      for (const auto& reading : sonar->readings) {
+      for (const auto& reading : heard_) {
         if (std::isnan(reading.range)) continue;
         const bool hit = reading.range < sonar->max_range;
         finder.add({static_cast<double>(reading.x), static_cast<double>(reading.y), static_cast<double>(reading.yaw)},
@@ -130,10 +150,12 @@ class RecoveryComponent final : public Component {
     for (const std::string& why : {wanted_.missing(), waypoint_.missing(), odom_.missing()})
       if (!why.empty()) return rest(now, why);
     const geometry::Pose2 robot = geometry::pose_of(odom_.latest()->pose.pose);
-    const geometry::Vector2 target = geometry::position_of(waypoint_.latest()->pose);
+    const geometry::Vector2 waypoint = geometry::position_of(waypoint_.latest()->pose);
     const geometry::Twist2 command = geometry::twist_of(wanted_.latest()->twist);
     if (!robot.position().allFinite() || !std::isfinite(robot.yaw)) return rest(now, "odom: the pose is not finite");
-    if (!target.allFinite()) return rest(now, "waypoint: the position is not finite");
+    if (!waypoint.allFinite()) return rest(now, "waypoint: the position is not finite");
+    std::optional<geometry::Vector2> target;
+    if (!without_a_way()) target = waypoint;
     const Recovering recovering = recovery_.step(now, robot, target, command, room());
     if (recovering.begun) begin(*recovering.begun, recovering.why, now);
     if (recovering.twist) {
@@ -146,6 +168,15 @@ class RecoveryComponent final : public Component {
       report_degraded("trapped: " + to_text(*rung));
     else
       report_active();
+  }
+
+  /// There is a goal, and no route to it.
+  bool without_a_way() const {
+    using kervan_msgs::msg::GoalState;
+    const auto* route = route_.latest();
+    const auto* status = status_.latest();
+    return route && route->poses.empty() && status &&
+           (status->state == GoalState::GOAL_PENDING || status->state == GoalState::GOAL_ACTIVE);
   }
 
   void begin(Rung rung, const std::string& why, Time now) {

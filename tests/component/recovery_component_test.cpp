@@ -6,6 +6,7 @@
 #include "kervan_msgs/msg/GoalStatus.hpp"
 #include "kervan_msgs/msg/ReplanRequest.hpp"
 #include "kervan_msgs/msg/SonarArray.hpp"
+#include "nav_msgs/msg/Path.hpp"
 #include "std_msgs/msg/Header.hpp"
 #include "tests/component/plane_fixtures.hpp"
 
@@ -84,6 +85,31 @@ TEST(RecoveryComponent, AsksOthersBacksUpAndGivesUp) {
   harness.feed("goal_status", status);
   stand(harness, 5s);
   EXPECT_EQ(harness.take<Header>("forget").size(), 1u) << "another goal";
+}
+
+TEST(RecoveryComponent, LooksAroundWhileThereIsNoWayToTheGoal) {
+  Harness harness("control/recovery", small_robot());
+  harness.feed("waypoint", pose_at(1.0, 1.0));
+  harness.feed("route", nav_msgs::msg::Path{});
+  stand(harness, 10s);
+  EXPECT_EQ(harness.state(), ComponentState::active) << "there is no goal";
+  kervan_msgs::msg::GoalStatus status;
+  status.goal_id = "9.000000000";
+  status.state = kervan_msgs::msg::GoalState::GOAL_ACTIVE;
+  harness.feed("goal_status", status);
+  harness.take<TwistStamped>("cmd_vel_raw");
+  for (Duration t{}; t < 6s; t += 50ms) {
+    harness.feed("odom", odometry_at({1.0, 1.0, 0.0}));
+    harness.feed("cmd_vel_wanted", twist_of(0.0, 0.0));
+    harness.feed("sonar", sonars(1.0F, 4.0F, 3.0F, 3.0F));
+    harness.advance(50ms);
+  }
+  EXPECT_EQ(harness.reason(), "trapped: looking around");
+  EXPECT_EQ(harness.latest<TwistStamped>("cmd_vel_raw")->twist, twist_of(0.0, 0.6).twist);
+  status.state = kervan_msgs::msg::GoalState::GOAL_FAILED;
+  harness.feed("goal_status", status);
+  stand(harness, 200ms);
+  EXPECT_EQ(harness.state(), ComponentState::active) << "it was given up";
 }
 
 TEST(RecoveryComponent, EndsAManoeuvreWhenTheRobotDoesNotKnowWhereItIs) {

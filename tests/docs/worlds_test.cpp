@@ -18,9 +18,11 @@ using kervan::test::text_of;
 
 const fs::path worlds = fs::path(KERVAN_SOURCE) / "sim" / "worlds";
 
-std::vector<std::string> names_of(const char* ending) {
+std::vector<fs::path> folders() { return {worlds, worlds / "traps"}; }
+
+std::vector<std::string> names_of(const fs::path& folder, const char* ending) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(worlds))
+  for (const auto& entry : fs::directory_iterator(folder))
     if (entry.path().extension() == ending) names.push_back(entry.path().stem());
   std::sort(names.begin(), names.end());
   return names;
@@ -28,15 +30,16 @@ std::vector<std::string> names_of(const char* ending) {
 
 TEST(Worlds, HaveThePictureThatTheProgramDraws) {
   const Folder folder;
-  for (const std::string& name : names_of(".yaml")) {
-    const fs::path world = worlds / (name + ".yaml"), picture = worlds / (name + ".svg");
-    const auto drawn = run_line(KERVAN_PROGRAM, "draw '" + world.string() + "' --out world.svg", folder.path());
-    ASSERT_EQ(drawn.code, 0) << drawn.err;
-    ASSERT_TRUE(fs::exists(picture)) << "draw it: ./kervan draw " << name << " --out " << picture;
-    EXPECT_TRUE(text_of(folder.path() / "world.svg") == text_of(picture))
-        << picture << " is out of date; draw it: ./kervan draw " << name << " --out " << picture;
+  for (const fs::path& place : folders()) {
+    for (const std::string& name : names_of(place, ".yaml")) {
+      const fs::path world = place / (name + ".yaml"), picture = place / (name + ".svg");
+      const auto drawn = run_line(KERVAN_PROGRAM, "draw '" + world.string() + "' --out world.svg", folder.path());
+      ASSERT_EQ(drawn.code, 0) << drawn.err;
+      EXPECT_TRUE(fs::exists(picture) && text_of(folder.path() / "world.svg") == text_of(picture))
+          << "draw it: ./kervan draw " << world << " --out " << picture;
+    }
+    EXPECT_EQ(names_of(place, ".svg"), names_of(place, ".yaml"));
   }
-  EXPECT_EQ(names_of(".svg"), names_of(".yaml"));
 }
 
 TEST(Worlds, HaveThePlansThatTheProgramDraws) {
@@ -56,26 +59,30 @@ TEST(Worlds, HaveThePlansThatTheProgramDraws) {
 }
 
 TEST(Worlds, AreOnTheirPageWithTheirPictures) {
-  const std::string page = text_of(worlds / "README.md");
-  for (const std::string& name : names_of(".yaml")) {
-    EXPECT_NE(page.find("![" + name + "](" + name + ".svg)"), std::string::npos) << name;
-    EXPECT_NE(page.find("[`" + name + "`](" + name + ".yaml)"), std::string::npos) << name;
+  for (const fs::path& place : folders()) {
+    const std::string page = text_of(place / "README.md");
+    for (const std::string& name : names_of(place, ".yaml")) {
+      EXPECT_NE(page.find("![" + name + "](" + name + ".svg)"), std::string::npos) << name;
+      EXPECT_NE(page.find("[`" + name + "`](" + name + ".yaml)"), std::string::npos) << name;
+    }
   }
 }
 
 TEST(Worlds, AreWhatTheScriptDraws) {
   const Folder folder;
   int drawn = 0;
-  for (const std::string& name : names_of(".yaml")) {
-    const std::string text = text_of(worlds / (name + ".yaml"));
-    if (text.find("# Drawn by draw.awk") == std::string::npos) continue;
-    ++drawn;
-    const auto result =
-        run({"/usr/bin/awk", {"-f", (worlds / "draw.awk").string(), "-v", "world=" + name}}, folder.path());
-    EXPECT_EQ(result.code, 0) << result.err;
-    EXPECT_TRUE(result.out == text) << "draw it: awk -f draw.awk -v world=" << name << " > " << name << ".yaml";
+  for (const fs::path& place : folders()) {
+    for (const std::string& name : names_of(place, ".yaml")) {
+      const std::string text = text_of(place / (name + ".yaml"));
+      if (text.find("# Drawn by draw.awk") == std::string::npos) continue;
+      ++drawn;
+      const auto result =
+          run({"/usr/bin/awk", {"-f", (place / "draw.awk").string(), "-v", "world=" + name}}, folder.path());
+      EXPECT_EQ(result.code, 0) << result.err;
+      EXPECT_TRUE(result.out == text) << "draw it: awk -f draw.awk -v world=" << name << " > " << name << ".yaml";
+    }
   }
-  EXPECT_GE(drawn, 6);
+  EXPECT_GE(drawn, 6 + 23);
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST(ControlSteadyState, RecoveryOfARobotThatIsNotTrappedAllocatesNothing) {
   expect_steady([&](int i) {
     now += 100ms;
     const RobotState robot{{0.1 * i, 0.0, 0.0}, {1.0, 0.1}};
-    const Recovering recovering = recovery.step(now, robot.pose, {99.0, 0.0}, robot.twist, {});
+    const Recovering recovering = recovery.step(now, robot.pose, geometry::Vector2(99.0, 0.0), robot.twist, {});
     EXPECT_FALSE(recovering.twist);
     return robot.twist.angular;
   });

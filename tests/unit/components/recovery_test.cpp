@@ -70,15 +70,16 @@ TEST(Recovery, TakesOneRungAfterTheOtherAndGivesUp) {
   EXPECT_EQ(robot.rungs, (std::vector{Rung::forget}));
   EXPECT_EQ(robot.why, "the robot stands though it has somewhere to go");
   robot.stand(60s);
-  EXPECT_EQ(robot.rungs, (std::vector{Rung::forget, Rung::replan, Rung::turn, Rung::back_up, Rung::give_up}));
+  EXPECT_EQ(robot.rungs,
+            (std::vector{Rung::forget, Rung::replan, Rung::turn, Rung::back_up, Rung::pull_ahead, Rung::give_up}));
   EXPECT_EQ(robot.why,
             "the robot stands though it has somewhere to go, and nothing has helped: forgetting, a new plan, turning, "
-            "backing up");
+            "backing up, pulling ahead");
   robot.stand(600s);
-  EXPECT_EQ(robot.rungs.size(), 5u) << "it stays out of the way";
+  EXPECT_EQ(robot.rungs.size(), 6u) << "it stays out of the way";
   robot.recovery.begin();
   robot.stand(5s);
-  EXPECT_EQ(robot.rungs.size(), 6u) << "another goal";
+  EXPECT_EQ(robot.rungs.size(), 7u) << "another goal";
 }
 
 TEST(Recovery, LeavesOutWhatCannotHelp) {
@@ -160,7 +161,64 @@ TEST(Recovery, FollowsTheWallOfATrapUntilItsTargetIsAheadAgain) {
   robot.room.ahead = 2.0;
   robot.pose.yaw = 0.0;
   for (int i = 0; i < 40; ++i) recovering = robot.step({});
+  EXPECT_TRUE(recovering.twist) << "its target is ahead, but it is no nearer to it than it was";
+  robot.pose.x = 1.0;
+  recovering = robot.step({});
   EXPECT_FALSE(recovering.twist);
+}
+
+TEST(Recovery, DoesNotBeginAnewBeforeItIsNearerThanEver) {
+  Robot robot;
+  robot.stand(8500ms);
+  for (int i = 0; i < 80; ++i) {
+    robot.pose.x -= 0.02;
+    robot.step({-0.2, 0.0});
+  }
+  robot.rungs.clear();
+  robot.stand(5s);
+  ASSERT_FALSE(robot.rungs.empty());
+  EXPECT_NE(robot.rungs.front(), Rung::forget) << "it is 1.6 m from where it was trapped, and farther from its target";
+}
+
+TEST(Recovery, LooksAroundFromTimeToTimeWhileThereIsNoWay) {
+  Robot robot;
+  double turned = 0.0;
+  int looks = 0;
+  for (int i = 0; i < 900; ++i) {
+    robot.now += period;
+    const Recovering recovering = robot.recovery.step(robot.now, robot.pose, std::nullopt, {}, robot.room);
+    if (recovering.begun) {
+      EXPECT_EQ(*recovering.begun, Rung::look_around);
+      EXPECT_EQ(recovering.why, "the robot has no way to its goal");
+      if (looks++ == 0) {
+        EXPECT_EQ(robot.now, Time{} + 4100ms);
+      }
+    }
+    if (!recovering.twist) continue;
+    EXPECT_EQ(recovering.twist->linear, 0.0);
+    turned += 0.1 * recovering.twist->angular;
+    robot.pose.yaw = geometry::wrap_angle(robot.pose.yaw + 0.1 * recovering.twist->angular);
+  }
+  EXPECT_EQ(looks, 6);
+  EXPECT_NEAR(turned, looks * 2.0 * pi, looks * 0.1);
+  EXPECT_FALSE(robot.recovery.manoeuvre());
+}
+
+TEST(Recovery, LooksAroundNoLongerThanThereIsNoWay) {
+  Robot robot;
+  for (int i = 0; i < 60; ++i) {
+    robot.now += period;
+    robot.recovery.step(robot.now, robot.pose, std::nullopt, {}, robot.room);
+  }
+  ASSERT_EQ(robot.recovery.manoeuvre(), Rung::look_around);
+  EXPECT_FALSE(robot.step({0.3, 0.0}).twist);
+  EXPECT_FALSE(robot.recovery.manoeuvre());
+  Robot cramped;
+  cramped.room = in_a_corner();
+  for (int i = 0; i < 600; ++i) {
+    cramped.now += period;
+    EXPECT_FALSE(cramped.recovery.step(cramped.now, cramped.pose, std::nullopt, {}, cramped.room).begun);
+  }
 }
 
 TEST(Recovery, DrivesIntoNothing) {
@@ -173,6 +231,17 @@ TEST(Recovery, DrivesIntoNothing) {
   EXPECT_EQ(robot.step({0.3, 0.0}).twist->linear, 0.0) << "something came up behind";
   for (int i = 0; i < 11; ++i) robot.step({0.3, 0.0});
   EXPECT_FALSE(robot.recovery.manoeuvre()) << "it waits for a second";
+}
+
+TEST(RoomFinder, TellsWhatIsBesideTheHullFromWhatIsBeforeIt) {
+  RoomFinder finder({.front = 0.3, .rear = 0.3, .half_width = 0.2});
+  finder.add({0.0, 0.0, 0.0}, 2.0, true);
+  finder.add({0.2, 0.1, 0.5 * pi}, 0.11, true);  // 0.01 m beside its front
+  const Room room = finder.room();
+  EXPECT_NEAR(room.ahead, 1.7, 1e-9);
+  EXPECT_NEAR(room.left, std::hypot(0.2, 0.21), 1e-9);
+  EXPECT_NEAR(room.left_bearing, std::atan2(0.21, 0.2), 1e-9);
+  EXPECT_NEAR(room.right_bearing, -0.5 * pi, 1e-9);
 }
 
 TEST(RoomFinder, KnowsOnlyWhereBeamsLook) {
