@@ -114,8 +114,7 @@ void bench_speed(bool smoke) {
   const auto small = std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {bench::cave(16.0)}});
   const auto large = std::make_shared<const sim::World>(sim::Obstacles{.bitmaps = {bench::cave(64.0)}});
   say("\n## Speed, one thread\n\nSimulated seconds for each second of the thread; median of %d runs. The least is for "
-      "steps as\n"
-      "long as the sensors' period, as Stage's.\n\n"
+      "steps as\nlong as the sensors' period, as Stage's.\n\n"
       "| world | robots | sensors | step | speed | least | microseconds for each robot and simulated second |\n"
       "|---|---|---|---|---|---|---|\n",
       smoke ? 1 : 3);
