@@ -17,8 +17,8 @@ const std::vector<std::string> verbs = {"run", "sweep", "check", "describe", "dr
 
 const CLI::Validator not_empty([](const std::string& text) { return text.empty() ? "the value is empty" : ""; }, "");
 
-/// The options that run and check share; returns --host.
-CLI::Option* add_composition(CLI::App& verb, cli::CompositionRequest& request) {
+/// The options that run and check share.
+void add_composition(CLI::App& verb, cli::CompositionRequest& request) {
   verb.add_option("composition", request.composition, "name of a shipped composition, or a file")
       ->type_name("NAME|FILE")
       ->required();
@@ -40,9 +40,13 @@ CLI::Option* add_composition(CLI::App& verb, cli::CompositionRequest& request) {
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb.add_flag("--json", request.json, "print the result as one JSON object, on the last line");
-  return verb.add_option("--host", request.host, "which of the composition's hosts this is")
-      ->type_name("NAME")
-      ->check(not_empty);
+  CLI::Option* host = verb.add_option("--host", request.host, "which of the composition's hosts this is")
+                          ->type_name("NAME")
+                          ->check(not_empty);
+  verb.add_flag(
+          "--emulate-hosts", request.emulate_hosts,
+          "this machine plays all hosts of the composition, each with a network of its own, joined as 'links' says")
+      ->excludes(host);
 }
 
 /// `kervan container`: one subcommand for each thing that can be asked.
@@ -196,7 +200,7 @@ int dispatch(int argc, char** argv) {
 
   cli::RunRequest run;
   CLI::App* run_verb = app.add_subcommand("run", "Run a composition until its mission ends.");
-  CLI::Option* host = add_composition(*run_verb, run);
+  add_composition(*run_verb, run);
   run_verb
       ->add_option(
           "--for", run.time_limit,
@@ -211,10 +215,6 @@ int dispatch(int argc, char** argv) {
                    "show in map.svg what each robot's sensors saw at the start and every so often, e.g. 5s")
       ->check(not_empty)
       ->type_name("TIME");
-  run_verb
-      ->add_flag("--emulate-hosts", run.emulate_hosts,
-                 "play all hosts of the composition here, each with a network of its own, joined as 'links' says")
-      ->excludes(host);
   CLI::Option* runs = run_verb->add_option("--runs", run.runs_folder, "folder that gets a folder for this run")
                           ->capture_default_str()
                           ->check(not_empty)

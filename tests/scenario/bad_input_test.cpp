@@ -138,8 +138,7 @@ TEST_F(BadInput, FilesThatAreNoComposition) {
   write("binary.yaml", std::string("kervan: \x7f\0\x01", 11));
   expect_refused({"run", "binary.yaml"}, "binary.yaml:1:10: this is not a text file\n");
   fs::create_directory(path() / "folder.yaml");
-  expect_refused({"run", "folder.yaml"},
-                 "folder.yaml: this is a folder; name a file, or a composition: kervan run lab\n");
+  expect_refused({"run", "folder.yaml"}, "folder.yaml: this is a folder; name a file, or a shipped composition\n");
   expect_refused({"run", "./"}, "./: this is a folder; ");
   fs::create_symlink("/nowhere", path() / "link.yaml");
   expect_refused({"run", "link.yaml"}, "link.yaml: there is no such file\n");
@@ -201,11 +200,13 @@ TEST_F(BadInput, Options) {
   expect_refused({"run", "lab", "lab"},
                  "kervan run: The following argument was not expected: lab; see kervan run --help\n");
   expect_refused({"run"}, "kervan run: a composition is missing; name a shipped one, such as lab, or a file; see ");
-  expect_refused({}, "a command is missing: run, sweep, check, describe, draw, container, systemd; see kervan --help\n");
+  expect_refused(
+      {}, "a command is missing: run, sweep, check, describe, draw, container, systemd, link; see kervan --help\n");
   expect_refused({"--nonsense"}, "kervan: ");
   expect_refused(
       {"rnu", "lab"},
-      "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, container, systemd\n");
+      "there is no command 'rnu'; did you mean 'run'? commands: run, sweep, check, describe, draw, container, "
+      "systemd, link\n");
   expect_refused({"describe", "magic/wand"}, "there is no component type 'magic/wand'; there are: ");
 }
 
