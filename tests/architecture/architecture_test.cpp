@@ -112,9 +112,9 @@ const std::vector<Arrow> arrows = {
     {"deploy/cli/.*", {"deploy/", "framework/", messages}},
     // The supervisor writes what containers read, and reads what they write.
     {"deploy/supervisor/.*", {own_folder, "deploy/container/", "deploy/composition/", "framework/", messages}},
-    // Plans of many runs: what a run left is read and drawn with the library that drew it.
     // What links do to packets is drawn from the simulator's counter-based random numbers.
     {"deploy/lab/link/.*", {own_folder, "deploy/composition/", "framework/", "sim/random.hpp"}},
+    // Plans of many runs: what a run left is read and drawn with the library that drew it.
     {"deploy/lab/.*",
      {own_folder, "deploy/composition/", "deploy/supervisor/child_process.hpp", "framework/", "components/observe/"}},
     {"deploy/.*", {own_folder, "deploy/composition/", "framework/", messages}, {"deploy/cli/"}},
