@@ -35,6 +35,21 @@ struct Controlled {
 /// Of a controller that looks at no obstacles.
 struct NoObstacles {};
 
+/// Declare the two parameters that every controller has.
+template <class Visitor>
+void describe_period(Duration& period, Visitor& v) {
+  v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+}
+template <class Visitor>
+void describe_arrival(double& arrive_within, Visitor& v) {
+  v(arrive_within, "arrive_within",
+    {.unit = "m",
+     .min = 0.001,
+     .max = 2.0,
+     .help = "Stands still this near to its waypoint until the next comes.",
+     .live = true});
+}
+
 /// `Params` have the members `period` (Duration) and `arrive_within` (m). `Obstacles`, if any, is the message of which
 /// the controller learns about them: SonarArray on the port `sonar`, or LaserScan on `scan`. Stands, and reports
 /// `degraded` with the reason, while an input it needs is missing or stale; stands still at its waypoint until the next

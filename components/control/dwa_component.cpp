@@ -27,7 +27,7 @@ struct DwaComponentParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    describe_period(period, v);
     v(sensor, "sensor", {.choices = {"scan", "sonar"}, .help = "Which of the inputs says where obstacles are."});
     v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
     v(window.hull.front, "front",
@@ -88,12 +88,7 @@ struct DwaComponentParams {
     v(seen.spacing, "spacing", {.unit = "m", .min = 0.02, .max = 0.2, .help = "Of obstacle points."});
     v(seen.memory, "memory",
       {.min = 0.0, .max = 600.0, .help = "How long obstacles are remembered where the laser cannot look."});
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 2.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 
   DwaParams of_window() const {

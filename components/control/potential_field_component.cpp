@@ -22,7 +22,7 @@ struct PotentialFieldParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    describe_period(period, v);
     v(force.law, "law", {.choices = {"potential_classic", "potential_gecui"}, .help = "How an obstacle repels."});
     v(force.xi, "xi", {.min = 0.0, .max = 100.0, .help = "Attraction for each metre to the waypoint.", .live = true});
     v(force.eta, "eta", {.min = 0.0, .max = 100.0, .help = "Strength of the repulsion.", .live = true});
@@ -54,12 +54,7 @@ struct PotentialFieldParams {
        .live = true});
     v(drive.braking, "braking",
       {.unit = "m/s2", .min = 0.01, .max = 10.0, .help = "Deceleration it may count on.", .live = true});
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 1.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 };
 

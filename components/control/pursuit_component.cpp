@@ -16,14 +16,9 @@ struct PursuitParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    describe_period(period, v);
     control::describe(drive, v);
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 2.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 };
 

@@ -57,12 +57,7 @@ struct VffComponentParams {
        .max = 5.0,
        .help = "How far a sonar that hears no echo lowers the cells of its axis."});
     v(memory, "memory", {.unit = "", .min = 0.1, .max = 1024.0, .help = "That the certainty grid may take, in MiB."});
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 2.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 
   VffParams of_field() const {

@@ -18,7 +18,7 @@ struct VfhOpeningsParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    describe_period(period, v);
     v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
     v(openings.free_range, "free_range",
       {.unit = "m", .min = 0.0, .max = 100.0, .help = "A beam is free if it sees farther.", .live = true});
@@ -33,12 +33,7 @@ struct VfhOpeningsParams {
       {.help = "Wide openings are driven through where the target is, not in the middle: not the paper's rule.",
        .live = true});
     control::describe(drive, v);
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 2.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 };
 

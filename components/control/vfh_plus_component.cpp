@@ -23,7 +23,7 @@ struct VfhPlusComponentParams {
 
   template <class Visitor>
   void describe(Visitor& v) {
-    v(period, "period", {.min = 0.01, .max = 1.0, .help = "Time between two commands."});
+    describe_period(period, v);
     v(mount, "mount", {.min = -10.0, .max = 10.0, .help = "Pose of the laser in base_link."});
     const auto distance = [&v](double& value, const char* name, double most, const char* help) {
       v(value, name, {.unit = "m", .min = 0.0, .max = most, .help = help, .live = true});
@@ -62,12 +62,7 @@ struct VfhPlusComponentParams {
     v(law.least_share, "least_share",
       {.min = 0.0, .max = 1.0, .help = "Of the speed, right beside something.", .live = true});
     control::describe(drive, v);
-    v(arrive_within, "arrive_within",
-      {.unit = "m",
-       .min = 0.001,
-       .max = 2.0,
-       .help = "Stands still this near to its waypoint until the next comes.",
-       .live = true});
+    describe_arrival(arrive_within, v);
   }
 };
 
