@@ -167,6 +167,9 @@ void expect_good(const std::string& command) {
   } else if (const std::string file = trimmed(rest); file.starts_with("tests/package/")) {
     EXPECT_EQ(kervan_says(verb + " --help").code, 0) << command;
     EXPECT_TRUE(fs::exists(root / file)) << command;
+  } else if (verb == "sweep") {
+    // That every shipped one can begin is tested where sweeps are.
+    EXPECT_TRUE(fs::exists(root / "deploy/lab/experiments" / (file + ".yaml"))) << command;
   } else {
     // How long it may run is nothing to check.
     const auto result =
