@@ -105,7 +105,8 @@ TEST_F(EmulatedHosts, CannotHearEachOtherDuringAnOutage) {
   Supervised run(beacons("links: {profile: ethernet, pairs: [{between: [base, robot], down: [0s..600s]}]}\n"), "wall",
                  "--emulate-hosts --for 2s", kHosts);
   run.wait();
-  for (const auto& one : run.summary()["links"]) {
+  const nlohmann::json summary = run.summary();
+  for (const auto& one : summary["links"]) {
     EXPECT_GT(one["down"].get<int>(), 0) << one;
     EXPECT_GT(one["delivered"].get<int>(), 0) << "they found each other before the schedule began: " << one;
   }
